@@ -134,14 +134,15 @@ _HOMES = {
 class _Reader(staticmethod):  # type: ignore[type-arg]
     """Static method of a compiled class that `nacre.surfaces` has, imported when it is used."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, of: type) -> None:
         super().__init__(_Reader)
-        self.name = name
+        self.name, self.qualname = name, f"{of.__name__}.read"
 
     def __get__(self, surface: object, owner: type | None = None) -> Callable[..., object]:
         from nacre import surfaces
 
         read: Callable[..., object] = getattr(surfaces, self.name)
+        read.__module__, read.__qualname__ = "nacre", self.qualname  # as errors and pickles name it
         return read
 
 
@@ -153,8 +154,8 @@ def _markup(surface: HeightMap) -> str:
 
 # Of the compiled classes, whose files are read and whose pictures are drawn in Python.
 HeightMap._repr_html_ = _markup  # type: ignore[attr-defined]
-HeightMap.read = _Reader("read_map")  # type: ignore[method-assign]
-SampledProfile.read = _Reader("read_profile")  # type: ignore[method-assign]
+HeightMap.read = _Reader("read_map", HeightMap)  # type: ignore[method-assign]
+SampledProfile.read = _Reader("read_profile", SampledProfile)  # type: ignore[method-assign]
 
 
 def _imported(name: str) -> object:

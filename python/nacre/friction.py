@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.groups import names_itself
 from nacre._tools.progress import lasting
 from nacre._tools.units import energy, symbol
 from nacre.contact import Contact, solve
@@ -144,6 +145,7 @@ def history(solutions: Sequence[FrictionSolution]) -> xarray.Dataset:
     return History(checked(solutions)).numbers()
 
 
+@names_itself
 def creep_curve(
     shape: core.Shape,
     body: core.HalfSpace | core.Elastic,

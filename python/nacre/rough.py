@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.groups import names_itself
 from nacre._tools.typing import Body
 from nacre._tools.units import symbol, written
 from nacre.contact import Contact
@@ -350,6 +351,7 @@ def windowed(surface: core.HeightMap, taper: float = 0.1) -> core.HeightMap:
     )
 
 
+@names_itself
 def load_curve(
     shape: core.Shape,
     body: Body,

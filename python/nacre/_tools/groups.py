@@ -5,7 +5,8 @@ from __future__ import annotations
 import dataclasses
 import functools
 import inspect
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING
 from typing import Any, Self, TypeVar, get_type_hints
 
@@ -80,6 +81,32 @@ def keyword_units(*declared: Any, line: bool = False) -> dict[str, str]:
     return units
 
 
+UNEXPECTED = re.compile(r"unexpected keyword argument '(\w+)'")
+
+
+def _called(function: Callable[..., object], values: Sequence[object]) -> str:
+    """Return the name that users know: that of a method has the class of its object."""
+    of, _, name = function.__qualname__.rpartition(".")
+    return f"{type(values[0]).__name__}.{name}" if of and values else function.__qualname__
+
+
+def names_itself(function: F) -> F:
+    """Decorate a function that passes keywords on: an error about an unknown one names it."""
+
+    @functools.wraps(function)
+    def call(*values: Any, **keywords: Any) -> Any:
+        try:
+            return function(*values, **keywords)
+        except (AttributeError, TypeError) as error:  # Matplotlib's are of attributes
+            unknown = UNEXPECTED.search(str(error))
+            if unknown is None or unknown[1] not in keywords:
+                raise
+            words = str(error)[unknown.start() :]
+            raise TypeError(f"{_called(function, values)}() got an {words}") from None
+
+    return call  # type: ignore[return-value]
+
+
 def grouped(*groups: type[Group], leave: tuple[str, ...] = ()) -> Callable[[F], F]:
     """Return a decorator that gives a function the keywords of groups and refuses all others."""
 
@@ -109,7 +136,7 @@ def grouped(*groups: type[Group], leave: tuple[str, ...] = ()) -> Callable[[F], 
             try:
                 signature.bind(*values, **keywords)
             except TypeError as error:
-                raise TypeError(f"{function.__qualname__}() {error}") from None
+                raise TypeError(f"{_called(function, values)}() {error}") from None
             return function(*values, **keywords)
 
         call.__signature__ = signature  # type: ignore[attr-defined]

@@ -10,9 +10,12 @@ import re
 import sys
 import threading
 from collections.abc import Mapping
+from contextlib import suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from decimal import Decimal
+from fractions import Fraction
+from functools import cache
 from types import TracebackType
 
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
@@ -75,6 +78,93 @@ def _product(unit: str, sizes: Mapping[str, float]) -> float:
         size = sizes.get(name, 1.0) ** POWERS[power]
         above, below = (above, below * size) if mark == "/" else (above * size, below)
     return above / below
+
+
+DEFINED = {
+    **dict.fromkeys(("kg", "m", "s", "rad"), (1.0, "")),
+    **{"g": (1e-3, "kg"), "t": (1e3, "kg"), "N": (1.0, "kg m/s²"), "J": (1.0, "N m")},
+    **{"Pa": (1.0, "N/m²"), "bar": (1e5, "Pa"), "Nm": (1.0, "N m"), "Nmm": (1e-3, "N m")},
+    **{"Pas": (1.0, "Pa s"), "P": (0.1, "Pa s"), "St": (1e-4, "m²/s"), "kgf": (9.80665, "N")},
+    **{"lbf": (BASES["lbf"][1], "N"), "in": (BASES["in"][1], "m"), "psi": (1.0, "lbf/in²")},
+    **{"ksi": (1e3, "psi"), "ft": (12.0, "in"), "min": (60.0, "s"), "h": (60.0, "min")},
+    **dict.fromkeys(("°", "deg"), (math.pi / 180, "rad")),
+    **dict.fromkeys(("′", "'", "arcmin"), (math.pi / 180 / 60, "rad")),
+    **{"%": (1e-2, "1"), "‰": (1e-3, "1"), "1": (1.0, "1"), "Hz": (2 * math.pi, "rad/s")},
+    **dict.fromkeys(("rpm", "U/min", "1/min", "min-1"), (2 * math.pi / 60, "rad/s")),
+}
+"""Units in which people type numbers, by name: each is so many of another one; four are of their
+own. A minute's inverse is a speed of rotation, in which everybody counts turns."""
+PREFIXED = ("g", "m", "s", "N", "Pa", "J", "rad", "bar", "Nm", "Pas", "P", "St", "Hz")
+"""Units that may have a prefix."""
+TYPED = re.compile(r"([+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d{1,3}+)?+)\s*((?!1$)\S.*)")
+"""A number and its unit."""
+LONGEST_TYPED = 60
+"""Largest number of characters of a number with its unit."""
+FACTOR = re.compile(r"(^| ?/ ?| )([^\W\d]+|[°′'%‰]|1(?!\d))(-?\d)?")
+"""A unit in a product or a quotient as it is typed: the sign before it, its name and its power."""
+SPELLINGS = str.maketrans(
+    {"·": " ", "⋅": " ", "*": " ", "^": "", "μ": "µ"}
+    | {sign: str(power) for sign, power in zip("²³⁴¹⁻", (2, 3, 4, 1, "-"), strict=True)}
+)
+
+
+@cache
+def _measure(unit: str) -> tuple[Fraction, dict[str, int]] | None:
+    """Return the exact size in SI, and the powers of kg, m, s and rad, of a unit as it is typed.
+
+    It is None of one that is not known, and of one that can be read in two ways: "N/m m", "m m".
+    """
+    unit = unit.replace("**", "").translate(SPELLINGS).strip()
+    unit = f"1{unit}" if unit.startswith("/") else unit
+    # What is below the line is a product in parentheses, or has a line of its own.
+    unit = re.sub(r"\(([^()/]+)\)$", lambda below: "/".join(below[1].split()), unit)
+    factors = [(unit, unit, "")] if unit in DEFINED else FACTOR.findall(unit)
+    names, signs = [name for _, name, _ in factors], [sign.strip() for sign, _, _ in factors]
+    if unit not in DEFINED and "".join(map("".join, factors)) != unit:
+        return None
+    if len({*names}) < len(names) or ("/" in signs and "" in signs[signs.index("/") :]):
+        return None
+    size, powers = Fraction(1), dict[str, int]()
+    for sign, (_, name, digit) in zip(signs, factors, strict=True):
+        if (known := _defined(name)) is None:
+            return None
+        power = int(digit or 1) * (-1 if sign == "/" else 1)
+        size *= known[0] ** power
+        for base, exponent in known[1].items():
+            powers[base] = powers.get(base, 0) + power * exponent
+    return size, {base: power for base, power in powers.items() if power}
+
+
+def _defined(name: str) -> tuple[Fraction, dict[str, int]] | None:
+    """Return the exact size in SI and the powers of a unit without products, if it is known."""
+    prefix, base = "", name
+    if name not in DEFINED:
+        prefix, base = name[:1].replace("u", "µ"), name[1:]
+        is_slip = base == "m" and prefix in ("G", "M", "T")  # Mm is mm that was typed in haste
+        if base not in PREFIXED or prefix not in SIZES or is_slip:
+            return None
+    size, of = DEFINED[base]
+    exact = Fraction(str(SIZES[prefix])) * Fraction(str(size))
+    inner = (Fraction(1), {base: 1} if of == "" else {}) if of in ("", "1") else _measure(of)
+    assert inner is not None
+    return exact * inner[0], inner[1]
+
+
+def number_in(unit: str, text: str) -> float:
+    """Return the number of a text with a unit, such as "5 mm", in another unit of its kind.
+
+    A `ValueError` says which unit the text must have.
+
+    >>> number_in("m", "5 mm"), number_in("rad/s", "30/min"), number_in("", "0.1 %")
+    (0.005, 3.141592653589793, 0.001)
+    """
+    typed = TYPED.fullmatch(text.strip().replace("−", "-")) if len(text) <= LONGEST_TYPED else None
+    target, own = _measure(unit or "1"), typed and _measure(typed[2])
+    if typed and target and own and own[1] == target[1]:
+        with suppress(OverflowError):
+            return float(Fraction(typed[1]) * own[0] / target[0])
+    must = f"in {unit} or in another unit of its kind" if unit else "without a unit, or in %"
+    raise ValueError(f"must be a number {must}, got {text!r}")
 
 
 PLAIN = {
@@ -170,6 +260,11 @@ def system() -> System:
     """Return the system of units that is set here."""
     outside: System = getattr(_thread, "system", _process)
     return _block.get() or outside
+
+
+def are_declared() -> bool:
+    """Return whether somebody has said here in which units numbers are, SI too."""
+    return _block.get() is not None or system() is not SI
 
 
 def _hold(units: System) -> None:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import reduce
 from operator import getitem
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from nacre._tools.units import System, size_of
+from nacre._tools.units import System, number_in, size_of
 from nacre.case.reference import UNIT, options, place
-from nacre.case.tables import unit_of
+from nacre.case.typed import si_unit
 from nacre.results.parameters import quantity_of
 
 SCALES: dict[str, Callable[[float], float]] = {
@@ -75,6 +76,8 @@ class Field(NamedTuple):
             value = float(text)
         except ValueError:
             value = math.nan
+            with suppress(ValueError):
+                value = number_in(self.unit, text)
         low, high = (np.format_float_positional(end, trim="-") for end in (self.low, self.high))
         must = f"between {low} and {high}" if math.isfinite(self.high) else "a finite number"
         must = f"{must} {self.unit}".rstrip()
@@ -133,20 +136,18 @@ def field_of(
     """
     keys, units = keys_of(path), data.get("units", "SI")
     names = [key for key in keys if isinstance(key, str)]
-    nodes = [place(data, inner).node for inner in (keys, keys[:-1])]
-    line = "width" in data.get("grid", {})
-    text = " ".join(str(nodes[0].get("description", "")).split())
-    unit = next((unit for node in nodes if (unit := unit_of(node, line))), "")
+    node = place(data, keys).node
+    text = " ".join(str(node.get("description", "")).split())
     quantity = quantity_of(".".join(names))
     one = Field(
         path,
         label=" ".join(map(str, keys[1:])).replace("_", " ") or path,
-        unit=System(units).unit(unit)[1],
+        unit=System(units).unit(si_unit(data, tuple(keys)))[1],
         help=UNIT.sub("", text) if helps is None else helps.get(quantity, ""),
         may_be_empty=names[-1] in EMPTY or "bond_strength" in names,
         is_count=any(
             "integer" in (option.get("type"), option.get("items", {}).get("type"))
-            for option in options(nodes[0])
+            for option in options(node)
         ),
     )._replace(**own)
     default = one.typed(entry_at(data, path), units)

@@ -7,6 +7,7 @@ import warnings
 from typing import Any, NamedTuple
 
 import nacre._core as core
+from nacre._tools.groups import names_itself
 from nacre.bearing.balls import DeepGrooveBall
 from nacre.bearing.geometry import SMALLEST, WIDEST, Bearing, above
 from nacre.bearing.iso import rating
@@ -101,6 +102,7 @@ def _difference(name: str, printed: float | None, own: float, standard: str) -> 
     return difference
 
 
+@names_itself
 def estimated_balls(
     *, bore: float, outside_diameter: float, capacity: float, static_capacity: float, **others: Any
 ) -> DeepGrooveBall:

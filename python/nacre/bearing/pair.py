@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import read_fields
-from nacre._tools.groups import grouped, in_unit, keyword_units
+from nacre._tools.groups import grouped, in_unit, keyword_units, names_itself
 from nacre._tools.typing import among
 from nacre._tools.units import rounded
 from nacre.bearing.arguments import BearingKeywords, BearingOptions, Operation, RingConditions
@@ -658,6 +658,7 @@ class PairSolution(Equilibrium):
 
         return plot.bearing_pair(self)
 
+    @names_itself
     def life(
         self, edge: Edge = "standard", *, rotating: Ring | None = None, **modification: Any
     ) -> PairLife:

@@ -451,6 +451,7 @@ def _notes(
         report = contact.report
         for kind, text in zip(report.warning_kinds, report.warnings, strict=True):
             texts.setdefault(kind, text)
-        kinds.update(dict.fromkeys(report.warning_kinds, 1))  # some are said of both axes
+        # Some are said of both axes; of a high pressure the bearing warns.
+        kinds.update({kind: 1 for kind in report.warning_kinds if kind != "high pressure"})
     for kind, number in kinds.items():
         yield f"{number} of {len(contacts)} contacts: {texts[kind]}"

@@ -215,4 +215,8 @@ def schema(
     """Print the reference of case files: all tables and keys."""
     from nacre.case import reference
 
-    print(json.dumps(reference.schema(), indent=2) if as_json else reference.text())
+    print(
+        json.dumps(reference.for_editors(reference.schema()), indent=2)
+        if as_json
+        else reference.text()
+    )

@@ -23,6 +23,7 @@ with extra("cli"):
     from nacre.case.indent import IndentCase
     from nacre.case.reference import Place, nearest, place, table_for
     from nacre.case.schema import MOST_VALUES, CaseTable, Keys, Range, WrongValue, at
+    from nacre.case.typed import with_numbers
 
 MOST_CHARACTERS = 60
 """Largest number of characters of a wrong value that an error shows."""
@@ -51,7 +52,7 @@ class Case:
     Parameters
     ----------
     data
-        Content of the file.
+        Content of the file; a number may be a text with its unit, "5 mm".
     name
         Name of the case in errors.
     folder
@@ -66,10 +67,13 @@ class Case:
         self.name = name
         self.folder = folder or Path()
         try:
-            self.data = copy.deepcopy(dict(data))
+            self._typed = copy.deepcopy(dict(data))
+            self.data = with_numbers(self._typed)
             self._table = self._keys_of(self.data)
         except RecursionError:
             raise CaseError(f"{name}: tables and lists are nested too deeply") from None
+        except WrongValue as error:
+            raise CaseError(f"{name}: {error}") from None
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Case:
@@ -99,8 +103,8 @@ class Case:
         return self._table.units
 
     def in_units(self, units: str) -> Case:
-        """Return the case with its numbers in other units."""
-        return Case({**self.data, "units": units}, self.name, self.folder)
+        """Return the case with its numbers in other units; texts with units stay what they are."""
+        return Case({**self._typed, "units": units}, self.name, self.folder)
 
     @property
     def is_indentation(self) -> bool:

@@ -36,7 +36,11 @@ class Sliding(Table):
 class Step(Sliding):
     """A step of a history; what it does not give stays as in the step before."""
 
-    load: Number | None = Field(None, description="Force that presses the bodies together [N].")
+    load: Number | None = Field(
+        None,
+        description="Force that presses the bodies together [N].",
+        json_schema_extra={"unit": "N", "unit_of_lines": "N/m"},
+    )
     approach: Number | None = Field(None, description="Approach [m], in place of a load.")
     friction: Number | None = Field(None, description="Coefficient of friction, at least 0.")
 

@@ -28,7 +28,7 @@ KEYS: dict[str, tuple[Any, str]] = {
     "strength": (Number, "Stress with which the surfaces attract each other [Pa]."),
 }
 """Types and descriptions of the numbers of tips and adhesion."""
-HALF_ANGLE = "Angle between axis and flank in radians, in place of a slope."
+HALF_ANGLE = "Angle between axis and flank [rad], in place of a slope."
 
 
 class MethodTable(Table):

@@ -25,7 +25,8 @@ WIDTH = 88
 UNIT = re.compile(r"\s*(\[(?:N m|N/m|m²/N|Pa|m|N)\])")
 INTRODUCTION = (
     "A case file is TOML. Numbers are in the units that the key units names, SI by default; N, m, "
-    "Pa below stand for its force, length and stress."
+    "Pa below stand for its force, length and stress. A number may have a unit of its own, as a "
+    'text: "5 mm", "210 GPa", "1500/min", "1e-6 mm³/(N m)".'
 )
 ITEMS = {"number": "finite numbers", "integer": "integers above 0", "string": "texts"}
 VALUES = {
@@ -42,6 +43,16 @@ def schema() -> Node:
     """Return the JSON schema of case files, for editors too."""
     all_kinds: Any = CaseTable | IndentCase | BearingCase
     return {"title": "case file of nacre", **TypeAdapter(all_kinds).json_schema()}
+
+
+def for_editors(node: Any) -> Any:
+    """Return a part of a JSON schema whose numbers may be texts with units."""
+    if isinstance(node, list):
+        return [for_editors(item) for item in node]
+    if not isinstance(node, dict):
+        return node
+    inner = {key: for_editors(item) for key, item in node.items()}
+    return inner | {"type": ["number", "string"]} if inner.get("type") == "number" else inner
 
 
 def options(node: Node) -> Iterator[Node]:

@@ -142,8 +142,13 @@ class RandomSurface(Shape):
     hurst: Number = Field(description=RANDOM["hurst"])
     shortest: Number = Field(description=RANDOM["shortest"])
     longest: Number = Field(description=RANDOM["longest"])
-    rms_slope: Number | None = Field(None, description=RANDOM["rms_slope"])
-    rms_height: Number | None = Field(None, description=RANDOM["rms_height"])
+    rms_slope: Number | None = Field(
+        None, description="Root of the mean square of the slope, in place of that of the height."
+    )
+    rms_height: Number | None = Field(
+        None,
+        description="Root of the mean square of the height [m], in place of that of the slope.",
+    )
     seed: Count = Field(
         description="Number that chooses the surface: the same one makes the same surface."
     )

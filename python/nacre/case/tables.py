@@ -25,7 +25,7 @@ from nacre._tools.groups import keyword_units
 T = TypeVar("T", bound="Table")
 
 TWO = Field(min_length=2, max_length=2)
-UNIT = re.compile(r"\[((?:1|N|m|Pa|kg|rad)[²³]?(?:[ /](?:m|s|N|Pa)[²³]?)?)\]")
+UNIT = re.compile(r"\[((?:1|N|m|Pa|kg|rad|h)[²³]?(?:[ /](?:m|s|N|Pa)[²³]?)?)\]")
 """A unit in the description of a key."""
 Number = FiniteFloat
 

@@ -939,9 +939,9 @@ def _step_callback(progress: StepProgress | None) -> Callable[..., object] | Non
 
 def _checked_solution(solved: core.Solved, shape: core.Shape, check: bool) -> Solution:
     """Issue the warnings of a solution, and return it if its tolerance was met."""
-    for message in solved.warnings():
-        warn(message)
     solution = Solution._of(solved, shape)
+    for message in solution.report.warnings:
+        warn(message)
     if check and (missed := solved.not_converged()) is not None:
         error = core.ConvergenceError(missed)
         error.solution = solution
@@ -999,7 +999,7 @@ def _solve_steps(
             for solved in steps:
                 solution = FrictionSolution._of(solved, shape)
                 termination = solution.report.termination
-                for warning in solution.normal.report.warnings if termination != "stopped" else []:
+                for warning in solution.report.warnings if termination != "stopped" else []:
                     warn(warning)
                 if options.check and termination == "iteration limit":
                     error = core.ConvergenceError(solved.not_converged())

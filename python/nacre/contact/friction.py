@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import energy, printable, rounded, symbol, written
+from nacre.contact import plausible
 from nacre.contact.normal import NormalContact
 from nacre.contact.solution import NOT_COUNTED, Solution, datum_words
 from nacre.contact.stresses import DepthOptions, depth_charts
@@ -221,6 +222,8 @@ class FrictionSolution(NormalContact, Shown, Result):
         report = FrictionReport(**numbers.pop("report"), warnings=warnings)
         solution = cls(solved, report=report, **numbers)
         solution.__dict__["normal"] = normal
+        texts = (text for _, text in plausible.of_friction(solution))
+        solution.__dict__["report"] = dataclasses.replace(report, warnings=(*warnings, *texts))
         return solution
 
     @functools.cached_property

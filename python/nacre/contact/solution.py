@@ -7,7 +7,7 @@ import math
 import os
 import types
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, overload
@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, overload
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.groups import names_itself
 from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
 from nacre._tools.units import printable, written
+from nacre.contact import plausible
 from nacre.contact.gradient import (
     Direction,
     Gradient,
@@ -139,7 +141,8 @@ class Report(Result):
 
     They are "grid edge", "sharp end", "free end", "coated end", "sharp edge", "map rim", "coarse",
     "coarse spots", "large contact", "outside grid", "peak error", "stations", "unknown stations"
-    and "endless crown".
+    and "endless crown"; and of numbers that are not plausible "high pressure", "thick layer" and
+    "odd modulus".
     """
     grid: core.Grid
     """Grid of the solve."""
@@ -299,7 +302,13 @@ class Solution(NormalContact, Shown, Result):
     @cached_property
     def report(self) -> Report:
         """Report: how the solution came about, and how good it is."""
-        return Report._of(self._solved.report())
+        report = Report._of(self._solved.report())
+        found = dict(plausible.of_contact(self, report))
+        return replace(
+            report,
+            warnings=[*report.warnings, *found.values()],
+            warning_kinds=[*report.warning_kinds, *found],
+        )
 
     def stiffness(self) -> Field:
         """Exact tangent stiffness ``(3, 3)`` of ``(sum p dA, sum p x dA, sum p y dA)``.
@@ -619,6 +628,7 @@ class Solution(NormalContact, Shown, Result):
         """
         return files.gridded(self)
 
+    @names_itself
     def save(
         self,
         path: str | os.PathLike[str],
@@ -678,8 +688,9 @@ class Solution(NormalContact, Shown, Result):
         if not whole:
             writers[".csv"] = lambda file: tables.write_sections(self, file)
         if depths is None and options:
-            names = ", ".join(sorted(options))
-            raise TypeError(f"{names}: without depths there are no such options")
+            name, *_ = sorted(options)
+            words = "without depths there are no options of stresses"
+            raise TypeError(f"unexpected keyword argument {name!r}: {words}")
         for is_given, ending, name in (
             (depths is not None, ".vtr", "depths are"),
             (whole, ".csv", "whole is"),

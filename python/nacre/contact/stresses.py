@@ -12,12 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.groups import with_units
+from nacre._tools.groups import names_itself, with_units
 from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
 from nacre._tools.units import rounded, written
 from nacre.cards import Limits, materials, names_of, numbers_of
+from nacre.contact import plausible
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
@@ -525,7 +526,10 @@ class StressSummary(Shown, Warned, Result):
     ) -> Self:
         layers = [LayerStress._from_fields(layer) for layer in fields["layers"]]
         interfaces = [InterfaceStress._from_fields(face) for face in fields["interfaces"]]
-        parts = {"layers": layers, "interfaces": interfaces, "friction": friction}
+        parts: dict[str, Any] = {"layers": layers, "interfaces": interfaces, "friction": friction}
+        added = np.hypot(*friction) if friction is not None else None
+        texts = (text for _, text in plausible.of_coefficient(added))
+        parts["warnings"] = [*fields["warnings"], *texts]
         state: dict[str, Any] = dict.fromkeys(cls._LATER) | fields | parts | contact
         return cls(**state)
 
@@ -779,6 +783,7 @@ class Stressed:
         """Contact below the traction; without friction this one."""
         return cast("Solution", getattr(self, "normal", self))
 
+    @names_itself
     def stress(
         self,
         z: Depths,
@@ -870,6 +875,7 @@ class Stressed:
         options = StressOptions(body, friction, direction, residual, threads, progress)
         return _warned(Stress(**core.stress(self._solved, z, fields, options)))
 
+    @names_itself
     @with_units(yield_stress="Pa", strength="Pa", residual="Pa")
     def stress_summary(
         self,
@@ -1282,9 +1288,11 @@ def caution_of(solution: Stressed) -> str | None:
 
 def kinds_of(normal: Solution) -> Iterator[str]:
     """Yield the kinds of the warnings of a contact, that of flat bodies by its size."""
-    for warning in cast(list[dict[str, Any]], normal.report._data["warnings"]):
+    solved = cast(list[dict[str, Any]], normal.report._data["warnings"])
+    for warning in solved:
         is_flat = warning["kind"] != "large contact" or warning["figure"] <= LARGEST_CONTACT
         yield warning["kind"] if is_flat else "very large contact"
+    yield from normal.report.warning_kinds[len(solved) :]
 
 
 def _doubts_of(solution: Stressed) -> dict[str, Any]:

@@ -23,6 +23,7 @@ from nacre._tools.notices import warn
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import AnyPath, Body, Matrix
 from nacre._tools.units import symbol, system
+from nacre.contact import plausible
 from nacre.contact.arguments import (
     MOTION,
     STEP,
@@ -335,7 +336,7 @@ class WearOptions:
 def rates(name: str, rate: Any, body: Body | None) -> list[float]:
     """Return the rates of the layers of a body and of its substrate, or one for all."""
     if isinstance(rate, int | float | np.number) and not isinstance(rate, bool):
-        return [float(rate)]
+        return [core.real(name, rate)]
     if not isinstance(body, core.HalfSpace):
         raise ValueError(f"{name} must be a number for a body without layers, got {rate!r}")
     by_layer: Any = core.layer_values(body, name, rate)
@@ -419,7 +420,8 @@ class WearMarch:
         self.settled = NOT_SETTLED not in known
         self.step_error = (self.earlier.step_error if self.earlier else None) or 0.0
         self.peak_error, self.regrids = 0.0, 0
-        self.rate_warnings = _rate_warnings(self.options)
+        rubs = plausible.of_coefficient((sliding.slide or sliding.roll or {}).get("friction"))
+        self.rate_warnings = [*_rate_warnings(self.options), *(text for _, text in rubs)]
 
     def _check_store(self, stored: WearHistory | None) -> None:
         """Raise a `ValueError` if a store is of other inputs."""

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import names_itself
 from nacre._tools.typing import Direction
 from nacre._tools.units import symbol
 from nacre.contact.solution import Solution
@@ -29,6 +30,7 @@ __all__ = ["Optimum", "coating_chart", "force_table", "load_curve", "optimise", 
 Values = Sequence[float] | npt.NDArray[np.float64]
 
 
+@names_itself
 def coating_chart(
     shape: core.Shape,
     substrate: core.Elastic | core.Rigid | core.Free,
@@ -116,6 +118,7 @@ def _refinable(contact_options: Mapping[str, object]) -> bool:
     return not (has_cell_fields or (isinstance(grid, core.Grid) and any(grid.periodic)))
 
 
+@names_itself
 def load_curve(
     shape: core.Shape, body: core.HalfSpace | core.Elastic, load: Values, **options: Any
 ) -> xarray.Dataset:
@@ -164,6 +167,7 @@ def load_curve(
     return dataset
 
 
+@names_itself
 def tilt_curve(
     shape: core.Shape,
     body: core.HalfSpace | core.Elastic,
@@ -211,6 +215,7 @@ def tilt_curve(
     return dataset
 
 
+@names_itself
 def force_table(
     shape: core.Shape,
     body: core.HalfSpace | core.Elastic,
@@ -296,7 +301,7 @@ def _split_options(options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str
     contact_options = {
         name: value for name, value in options.items() if name not in (*study, "progress")
     }
-    unknown = set(contact_options) - ARGUMENTS
-    if unknown:
-        raise TypeError(f"{', '.join(sorted(unknown))}: no argument of nacre.solve or nacre.sweep")
+    for name in sorted(set(contact_options) - ARGUMENTS):
+        words = "which neither nacre.solve nor nacre.sweep has"
+        raise TypeError(f"unexpected keyword argument {name!r}, {words}")
     return contact_options, study | {"progress": bar}

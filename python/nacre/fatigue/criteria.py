@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.groups import in_unit
+from nacre._tools.groups import in_unit, names_itself
 from nacre._tools.typing import Real, among
 from nacre.results import values
 
@@ -160,6 +160,9 @@ class Criterion:
     def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         """Return the class and its arguments."""
         return type(self), (self.bending, self.torsion)
+
+
+Criterion.__init__ = names_itself(Criterion.__init__)  # type: ignore[method-assign]
 
 
 class DangVan(Criterion):

@@ -16,6 +16,7 @@ from nacre._tools.groups import with_units
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre._tools.units import printable, written
+from nacre.contact import plausible
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution, check_unyielded
 from nacre.contact.stresses import PLACE, check_limits
@@ -896,7 +897,8 @@ def assess(
             rows_by_region += assessment.evaluate(region, ordered_depths, [float(friction)])
         if tell is not None:
             tell(1.0)
-    return _summarise(assessment, regions, rows_by_region, limits)
+    notes = [text for _, text in plausible.of_coefficient(friction)]
+    return _summarise(assessment, regions, rows_by_region, limits, notes)
 
 
 def _summarise(
@@ -904,9 +906,10 @@ def _summarise(
     regions: list[Region],
     rows_by_region: list[list[Row]],
     limits: list[float | None],
+    warning_texts: list[str],
 ) -> FatigueSummary:
     """Return the summary of the rows of all layers, and issue its warnings."""
-    layers, warning_texts = [], []
+    layers = []
     for region, rows in zip(regions, rows_by_region, strict=True):
         if rows:
             layer, layer_warnings = _layer(assessment, region, rows, limits[region.layer])

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
+from nacre._tools.groups import names_itself
 from nacre._tools.units import Scale, written
 from nacre.plot.drawer import draw
 from nacre.plot.style import WIDTH, checked_axes, extent, lengths, new_axes, next_look, styled
@@ -202,6 +203,7 @@ def _legend(axes: Axes) -> None:
     )
 
 
+@names_itself
 def loop(
     solutions: Sequence[FrictionSolution], along: str = "x", axes: Axes | None = None, **style: Any
 ) -> Axes:
@@ -239,6 +241,7 @@ def loop(
     return draw(loop_chart(solutions, "xy".index(along)), axes, **style)
 
 
+@names_itself
 def creep_curve(
     dataset: xarray.Dataset,
     axes: Axes | None = None,

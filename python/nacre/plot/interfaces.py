@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from nacre._core import integer
 from nacre._tools.extras import extra
+from nacre._tools.groups import names_itself
 from nacre._tools.typing import Member
 from nacre._tools.units import Scale, written
 from nacre.plot.stress import around, body_of, colourbar
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 
+@names_itself
 def interface_map(
     solution: Solution,
     interface: int = 0,

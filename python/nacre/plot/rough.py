@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nacre._tools.extras import extra
+from nacre._tools.groups import names_itself
 from nacre._tools.units import Scale, symbol
 from nacre.plot.drawer import draw
 from nacre.plot.style import COLOURMAP, COLOURS, lengths, new_axes, next_look, styled
@@ -67,6 +68,7 @@ def heights(surface: HeightMap, axes: Axes | None = None) -> Axes:
     return axes
 
 
+@names_itself
 def load_curve(
     curve: xarray.Dataset, quantity: str = "corrected_share", axes: Axes | None = None, **style: Any
 ) -> Axes:
@@ -110,6 +112,7 @@ def load_curve(
     return axes
 
 
+@names_itself
 def distribution(density: xarray.DataArray, axes: Axes | None = None, **style: Any) -> Axes:
     """Draw a distribution of `rough.pressure_distribution` or `rough.gap_distribution`.
 

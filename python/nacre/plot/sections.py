@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
+from nacre._tools.groups import names_itself
 from nacre._tools.units import written
 from nacre.plot.drawer import draw
 from nacre.plot.style import extent
@@ -26,6 +27,7 @@ Direction = Literal["x", "y"]
 QUANTITIES = ("pressure", "gap", "displacement", "indentation", "line_load")
 
 
+@names_itself
 def section(
     solution: Solution,
     along: Direction = "x",

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from nacre._core import HalfSpace, check_memory, integer
 from nacre._tools.extras import extra
+from nacre._tools.groups import names_itself
 from nacre._tools.typing import Member
 from nacre._tools.units import Scale, written
 from nacre.plot.drawer import draw
@@ -106,6 +107,7 @@ class _Section(NamedTuple):
         return mesh
 
 
+@names_itself
 def stress_section(
     solution: Solution,
     quantity: str = "von_mises",
@@ -212,6 +214,7 @@ def stress_section(
     return axes
 
 
+@names_itself
 def stress_depth(
     solution: Solution,
     quantities: Sequence[str] = ("xx", "yy", "zz", "von_mises"),

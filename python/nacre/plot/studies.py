@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
+from nacre._tools.groups import names_itself
 from nacre._tools.units import Scale
 from nacre.plot.style import COLOURMAP, new_axes, next_look, styled
 from nacre.results.parameters import VALUES
@@ -74,6 +75,7 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
     return axes
 
 
+@names_itself
 def curve(
     study: xarray.Dataset, quantity: str = "approach", axes: Axes | None = None, **style: Any
 ) -> Axes:

@@ -144,6 +144,25 @@ def test_numbers_are_those_of_the_saved_case(
     page.close()
 
 
+def test_a_number_with_a_unit_is_shown_as_it_was_typed(opened: Opened) -> None:
+    before = opened.at("peak").text_content()
+    field = opened.at("field:indent.load")
+    default, slider = field.input_value(), opened.at("slider:indent.load")
+    place, unit = slider.input_value(), field.locator("xpath=../*[@class='unit']")
+    assert unit.is_visible()
+    opened.type("indent.load", f"{float(default) * 1e-3!r} N")  # of mN
+    assert opened.wait() == before
+    assert field.input_value() == f"{float(default) * 1e-3!r} N"
+    assert unit.is_hidden()  # the text has its own
+    assert slider.input_value() == place
+    opened.type("indent.load", "5 GPa")
+    opened.wait("failed")
+    assert re.search(r"mN, got 5 GPa", str(opened.at("error").text_content()))
+    opened.type("indent.load", default)
+    assert opened.wait() == before
+    assert unit.is_visible()
+
+
 def test_a_drag_ends_at_the_last_value_with_one_full_solve(opened: Opened) -> None:
     opened.stages.clear()
     # The clock of the page stands still: no rest is long enough for a full solve during the drag.

@@ -248,7 +248,7 @@ def test_rolling_cell_by_cell_can_be_resumed() -> None:
 @pytest.mark.parametrize(
     ("keywords", "said"),
     [
-        ({"creepage": (0.09, None)}, None),
+        ({"creepage": (0.05, None)}, None),
         ({"creepage": (0.5, None)}, r"reaches 0\.50.* about 25 %"),
         ({"creepage": (-0.08, 0.08)}, "reaches 0.11"),
         # The contact has a radius of 6.9e-5, within a cell of 6e-6: its edge creeps by 0.2.
@@ -263,6 +263,26 @@ def test_large_creepages_are_warned_of(keywords: dict[str, Any], said: str | Non
     with pytest.warns(nacre.NacreWarning, match=said):
         rolled = CONTACT.roll(BALL, cells=2, **roll)
     assert [s.normal.report.warning_kinds for s in rolled] == [["large motion"]] * 2
+
+
+@pytest.mark.parametrize(
+    ("keywords", "said"),
+    [
+        ({"creepage": (0.0, -0.09)}, r"the creepage is 0\.09, .* 0\.1 % are 0\.001"),
+        ({"creepage": (1e-3, None), "friction": 30.0}, r"friction is 30, .* 30 % are 0\.3"),
+        ({"creepage": (1e-3, None), "friction": 3.0}, None),
+        ({"creepage": (1e-3, None), "friction": 1e3}, None),
+    ],
+)
+def test_percents_are_warned_of(keywords: dict[str, Any], said: str | None) -> None:
+    roll: dict[str, Any] = {**HELD, "direction": "+x", **keywords}
+    if said is None:
+        assert CONTACT.roll(BALL, **roll).report.warnings == ()
+        return
+    with pytest.warns(nacre.NacreWarning, match=said):
+        rolled = CONTACT.roll(BALL, **roll)
+    assert len(rolled.report.warnings) == 1
+    assert type(rolled).from_dict(rolled.to_dict()).report.warnings == rolled.report.warnings
 
 
 def test_large_twists_are_warned_of() -> None:

@@ -117,8 +117,9 @@ function slide(slider) {
 }
 
 function follow(input) {
-  const slider = one("input[type=range]", input.parentElement), value = +input.value.replace(",", ".");
-  if (!slider) return;
+  const slider = one("input[type=range]", input.parentElement), value = +input.value.replace(",", ".").replace("−", "-");
+  one(".unit", input.parentElement).hidden = Number.isNaN(value); // a text has its own
+  if (!slider || Number.isNaN(value)) return;
   slider.value = slider.dataset.scale === "linear" ? value : Math.log(value / input.defaultValue) / Math.log(20) || 0;
 }
 
