@@ -192,4 +192,5 @@ def mean_dynamic_load(bearing: Bearing, loads: Sequence[float], shares: Sequence
             f"{weights.sum():g} for {len(checked)}"
         )
     most = float(checked.max()) or 1.0  # without overflow
-    return most * float(np.average((checked / most) ** power, weights=weights)) ** (1 / power)
+    mean = float(np.average((checked / most) ** power, weights=weights))
+    return float(most * mean ** (1 / power))

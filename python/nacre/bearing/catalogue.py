@@ -148,7 +148,7 @@ def estimated_balls(
     Raises
     ------
     ValueError
-        If an argument is out of range, or no bearing has both ratings within 5 %.
+        If an argument is out of range, or no bearing has both ratings.
 
     Examples
     --------
@@ -178,10 +178,11 @@ def estimated_balls(
             found.append((capacity / rating(bearing) - 1, bearing))
     found.sort(key=lambda candidate: abs(candidate[0]))
     fitting = [bearing for above_own, bearing in found if -TOLERANCE <= above_own <= IMPROVED]
-    if not fitting or abs(found[0][0]) > TOLERANCE:
+    if not fitting:
         raise ValueError(
-            f"capacity and static_capacity must be those of balls between the rings within "
-            f"{100 * TOLERANCE:g} %, got {capacity:.6g} and {static:.6g} N: are they in N?"
+            f"capacity and static_capacity must be those of balls between the rings, C from "
+            f"{100 * TOLERANCE:g} % below to {100 * IMPROVED:g} % above ISO 281, got "
+            f"{capacity:.6g} and {static:.6g} N: are they in N?"
         )
     best, *others_fitting = fitting
     words = [f"{ball.count} of {ball.diameter * 1e3:.4g} mm" for ball in others_fitting]

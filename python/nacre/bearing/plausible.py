@@ -41,7 +41,7 @@ RANGES = {
         "it gives κ = λ^1.3 = 20, and films of some µm on roughnesses of some 0.1 µm have 10",
     ),
     "kinematic_viscosity over ν_1": Range(
-        *(0.0, 20.0, "", "is the viscosity kinematic, in m²/s, and the speed in rad/s?"),
+        *(0.0, 20.0, "", "is it kinematic, not dynamic, and the speed in rad/s?"),
         OIL,
     ),
     "pitch_diameter": Range(

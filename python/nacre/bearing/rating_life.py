@@ -384,10 +384,11 @@ def life_of(
 def _notes(bearing: Bearing, life: BearingLife, terms: _Terms, speed: float) -> tuple[str, ...]:
     """Return what numbers of a life ask that are beyond their plausible ranges."""
     texts = doubts_on("speed times pitch_diameter", speed * bearing.pitch)
-    if math.isfinite(life.hours):
+    load = life.equivalent_load
+    light = doubts_on("equivalent load", load, life.capacity) if load > 0 else []
+    if not light and math.isfinite(life.hours):
         texts += doubts_on("life", life.hours)
-    if life.equivalent_load > 0:
-        texts += doubts_on("equivalent load", life.equivalent_load, life.capacity)
+    texts += light
     if terms.limit is not None and life.viscosity_ratio is not None:
         texts += doubts_on("fatigue_load_limit", terms.limit, static_rating(bearing))
         texts += terms.lubrication.doubts(life.viscosity_ratio)
