@@ -39,8 +39,9 @@ UNREAD = (
     "without a contact angle with an axial one"
 )
 ROLLERS = (
-    "L10 has the exponent 10/3, and contacts rated with a factor 0.83; ISO/TS 16281 has the exponent "
-    "4 and no such factor: L10r of rollers is some 2 to 4 times as long, less with clearance"
+    "L10 has the exponent 10/3, and contacts rated with a factor 0.83; ISO/TS 16281 has the "
+    "exponent 4 and no such factor: L10r of rollers is some 2 to 4 times as long, less with "
+    "clearance"
 )
 """Why both lives of rollers differ."""
 
