@@ -326,8 +326,10 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     # A film belongs to solved contacts, which a draft has not.
     results = rated(case, solution, has_film=stage != "draft")
     solution, rows = results["bearing"], _selected(solution, BEARING_ROWS)
+    warnings = list(solution.report.warnings)
     if (life := results.get("life")) is not None:
         rows += [*life._rows(), *life._remarks()]
+        warnings += life.warnings
     rows += _selected(results.get("film"), FILM_ROWS)
     is_tilted = any(arguments.get("tilt") or ())
     if isinstance(solution, PairSolution):
@@ -344,7 +346,7 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     is_compared = is_tilted and isinstance(bearing, RollerBearing)
     following = NEXT.get(stage) if stage == "draft" or is_compared else None
     peak = ("peak pressure", solution.peak_pressure, "Pa", STANDARD)
-    return _answer(peak, rows, pictures, solution.report.warnings, solution.verdict(), following)
+    return _answer(peak, rows, pictures, warnings, solution.verdict(), following)
 
 
 def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:

@@ -7,6 +7,7 @@ of them on one shaft.
 """
 
 from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
+from nacre.bearing.basic import basic_life, equivalent_dynamic_load, mean_dynamic_load
 from nacre.bearing.catalogue import CatalogueCheck, check, estimated_balls
 from nacre.bearing.film import Film, film_thickness
 from nacre.bearing.iso import edge_factors, load_integrals, rating
@@ -53,9 +54,11 @@ __all__ = [
     "StressVolume",
     "TaperedRoller",
     "Zaretsky",
+    "basic_life",
     "check",
     "contamination_range",
     "edge_factors",
+    "equivalent_dynamic_load",
     "equivalent_static_load",
     "estimated_balls",
     "fatigue_load_limit",
@@ -63,6 +66,7 @@ __all__ = [
     "life_modification_factor",
     "life_ratio",
     "load_integrals",
+    "mean_dynamic_load",
     "rating",
     "reference_viscosity",
     "reliability_factor",

@@ -45,7 +45,7 @@ class Operation(Group):
     def checked(self, bearing: Bearing) -> Operation:
         """Return the operation with Python's numbers, or raise an error."""
         rotation = above("rotation", self.rotation, -math.inf)
-        speed, rotating = above("speed", self.speed, -math.inf), self.rotating
+        speed, rotating = above("speed", self.speed, -math.inf, "rad/s"), self.rotating
         if not among(rotating, RINGS):
             raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
         if abs(rotation) > TURNED:
@@ -53,7 +53,7 @@ class Operation(Group):
         if abs(bearing.cage_speed(speed, rotating)) * bearing.pitch / 2 > FASTEST:
             raise ValueError(
                 f"speed must be lower: elements must move at {FASTEST:g} m/s at most, "
-                f"got {speed!r} rad/s"
+                f"got {speed!r} rad/s: is it in 1/min?"
             )
         if self.required_life is not None and speed == 0:
             raise ValueError(

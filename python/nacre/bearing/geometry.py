@@ -64,11 +64,12 @@ LIGHTEST, HEAVIEST = 100.0, 25e3
 """Least and largest density of an element [kg/m³]: a tenth of that of plastics; above osmium's."""
 
 
-def above(name: str, value: object, least: float = 0.0) -> float:
-    """Return a finite number above `least`, or raise an error."""
+def above(name: str, value: object, least: float = 0.0, unit: str = "") -> float:
+    """Return a finite number above `least`, or raise an error, which says the unit."""
     number = core.real(name, value)
     if not (math.isfinite(number) and number > least):
         bound = "" if least == -math.inf else f" and above {least:g}"
+        bound += f", in {unit}" if unit else ""
         raise ValueError(f"{name} must be finite{bound}, got {value!r}")
     return number
 

@@ -14,16 +14,25 @@ import warnings
 from collections import deque
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 import nacre._core as core
-from nacre.bearing.geometry import RINGS, Bearing, Ring, above
+from nacre.bearing.geometry import LARGEST, RINGS, Bearing, Ring, above
 from nacre.bearing.iso import is_thrust
 from nacre.bearing.kinds import CurvedRaceways, RollerBearing, checked_bearing
+from nacre.bearing.plausible import doubts_on
 from nacre.bearing.static import STEEL, element_load, static_rating, total_load
 from nacre.contact import Contact
 from nacre.results.verdict import SINGULAR
 
-RELIABILITY = {0.9: 1.0, 0.95: 0.64, 0.96: 0.55, 0.97: 0.47, 0.98: 0.37, 0.99: 0.25, 0.999: 0.093}
+RELIABILITY = {
+    **{0.9: 1.0, 0.95: 0.64, 0.96: 0.55, 0.97: 0.47, 0.98: 0.37, 0.99: 0.25, 0.992: 0.22},
+    **{0.994: 0.19, 0.996: 0.16, 0.998: 0.12, 0.999: 0.093},
+    **{0.9992: 0.087, 0.9994: 0.080, 0.9995: 0.077},
+}
 """Factors a_1 by reliability: ISO 281:2007, table 12."""
+SLOPE = 1.5
+"""Slope of the Weibull distribution of that table, ``a_1 = 0.05 + 0.95 (ln S/ln 0.9)^(1/1.5)``."""
 SMALL = {
     "extreme cleanliness": (1.0, 1.0),
     "high cleanliness": (0.6, 0.8),
@@ -51,7 +60,7 @@ MOST_FACTOR, MOST_ADDITIVES = 50.0, 3.0
 """Largest a_ISO; and largest one that additives give: ISO 281:2007, 9.3.3.4 to 9.3.3.7, 9.3.3.3."""
 CLEAN = 0.2
 """Least e_C at which additives may be counted: ISO 281:2007, 9.3.3.3."""
-MOST_VISCOUS = 0.1
+MOST_VISCOUS = 0.01
 """Kinematic viscosity above that of any oil in a bearing [m²/s]: ISO VG 3200 has 3.2e-3."""
 LIMIT = 1.5e9
 """Pressure at the fatigue load limit [Pa]: ISO 281:2007, 9.3 and annex B."""
@@ -101,7 +110,7 @@ def reliability_factor(reliability: float) -> float:
     Parameters
     ----------
     reliability : float
-        Share of bearings that reach the life: 0.90, 0.95 to 0.99 in hundredths, or 0.999.
+        Share S of bearings that reach the life, from 0.9 to 0.9995.
 
     Returns
     -------
@@ -111,20 +120,33 @@ def reliability_factor(reliability: float) -> float:
     Raises
     ------
     ValueError
-        If the table has no such reliability.
+        If the reliability is not in the range of the table.
+
+    Notes
+    -----
+    The table is that of a Weibull distribution with the slope 1.5 and a life that all reach, 0.05
+    L_10, to 6e-3: the factor is linear in ``(ln S/ln 0.9)^(1/1.5)``. Between the rows of the table
+    nacre takes that line through both of them (derived), so that tabulated factors are exact.
 
     Examples
     --------
     >>> from nacre.bearing import reliability_factor
-    >>> reliability_factor(0.95)
-    0.64
+    >>> reliability_factor(0.95), round(reliability_factor(0.93), 3)
+    (0.64, 0.786)
     """
     value = core.real("reliability", reliability)
+    least, most = min(RELIABILITY), max(RELIABILITY)
+    if not least <= value <= most:
+        raise ValueError(
+            f"reliability must be a share from {least:g} to {most:g}, got {reliability!r}"
+        )
     for known, factor in RELIABILITY.items():
         if math.isclose(known, value, rel_tol=1e-9):
             return factor
-    known_ones = ", ".join(f"{known:g}" for known in RELIABILITY)
-    raise ValueError(f"reliability must be one of {known_ones}, got {reliability!r}")
+    failing, rows = np.log(list(RELIABILITY)), list(RELIABILITY.values())
+    lives = (failing / failing[0]) ** (1 / SLOPE)
+    life = (math.log(value) / failing[0]) ** (1 / SLOPE)
+    return float(np.interp(life, lives[::-1], rows[::-1]))
 
 
 def reference_viscosity(speed: float, pitch_diameter: float) -> float:
@@ -152,11 +174,27 @@ def reference_viscosity(speed: float, pitch_diameter: float) -> float:
     >>> round(reference_viscosity(3000 * math.pi / 30, 72.5e-3) * 1e6, 2)
     9.65
     """
-    per_minute = abs(core.real("speed", speed)) * 30 / math.pi
-    above("speed", per_minute)
+    above("speed", abs(core.real("speed", speed)), unit="rad/s")
+    return _reference_viscosity(float(speed), _usual_pitch(pitch_diameter))
+
+
+def _reference_viscosity(speed: float, pitch_diameter: float) -> float:
+    """Return what `reference_viscosity` documents, of checked numbers."""
+    per_minute = abs(speed) * 30 / math.pi
     factor, power = (45000.0, -0.83) if per_minute < SLOW else (4500.0, -0.5)
-    pitch = above("pitch_diameter", pitch_diameter) * 1e3
-    return float(factor * per_minute**power / math.sqrt(pitch) * 1e-6)
+    return float(factor * per_minute**power / math.sqrt(pitch_diameter * 1e3) * 1e-6)
+
+
+def _usual_pitch(pitch_diameter: float) -> float:
+    """Return a pitch diameter that is typed alone, and warn where it may be in millimetres."""
+    pitch, most = above("pitch_diameter", pitch_diameter), LARGEST["pitch_diameter"]
+    if pitch > most:
+        raise ValueError(
+            f"pitch_diameter must be at most {most:g} m, got {pitch_diameter!r} m: is it in mm?"
+        )
+    for text in doubts_on("pitch_diameter", pitch):
+        warnings.warn(text, core.NacreWarning, stacklevel=3)
+    return pitch
 
 
 def contamination_range(contamination: str, pitch_diameter: float) -> tuple[float, float]:
@@ -186,7 +224,12 @@ def contamination_range(contamination: str, pitch_diameter: float) -> tuple[floa
     >>> contamination_range("normal cleanliness", 65e-3)
     (0.5, 0.6)
     """
-    table = SMALL if above("pitch_diameter", pitch_diameter) < LARGE else LARGE_RANGES
+    return _contamination_range(contamination, _usual_pitch(pitch_diameter))
+
+
+def _contamination_range(contamination: str, pitch_diameter: float) -> tuple[float, float]:
+    """Return what `contamination_range` documents, of a checked pitch diameter."""
+    table = SMALL if pitch_diameter < LARGE else LARGE_RANGES
     if not isinstance(contamination, str) or contamination not in table:
         names = ", ".join(f'"{name}"' for name in table)
         raise ValueError(f"contamination must be one of {names}, got {contamination!r}")
@@ -410,8 +453,8 @@ class Lubrication(NamedTuple):
             above(name, getattr(self, name))
         if (self.kinematic_viscosity or 0.0) > MOST_VISCOUS:
             raise ValueError(
-                f"kinematic_viscosity must be at most {MOST_VISCOUS:g} m²/s, "
-                f"got {self.kinematic_viscosity!r}"
+                f"kinematic_viscosity must be at most {MOST_VISCOUS:g} m²/s, got "
+                f"{self.kinematic_viscosity!r} m²/s: is it in mm²/s, or a dynamic one in Pa s?"
             )
         if not isinstance(self.additives, bool):
             raise TypeError(f"additives must be True or False, got {self.additives!r}")
@@ -428,13 +471,23 @@ class Lubrication(NamedTuple):
             return float(self.film_ratio**1.3)
         assert self.kinematic_viscosity is not None
         if speed == 0:
-            raise ValueError("speed must be given, in solve or life, for a kinematic_viscosity")
-        return float(self.kinematic_viscosity) / reference_viscosity(speed, bearing.pitch)
+            raise ValueError(
+                "speed must be given, in rad/s, in solve or life, for a kinematic_viscosity"
+            )
+        return float(self.kinematic_viscosity) / _reference_viscosity(speed, bearing.pitch)
+
+    def doubts(self, kappa: float) -> list[str]:
+        """Return what an unusual viscosity ratio, or the number from which it follows, asks."""
+        if self.film_ratio is not None:
+            return doubts_on("film_ratio", self.film_ratio)
+        is_viscosity = self.kinematic_viscosity is not None
+        name = "kinematic_viscosity over ν_1" if is_viscosity else "viscosity_ratio"
+        return doubts_on(name, kappa)
 
     def cleanliness(self, bearing: Bearing) -> tuple[float, str]:
         """Return e_C, and where it is from in words: of a range it is the middle."""
         if isinstance(self.contamination, str):
-            low, high = contamination_range(self.contamination, bearing.pitch)
+            low, high = _contamination_range(self.contamination, bearing.pitch)
             middle = (low + high) / 2
             return middle, f"{self.contamination}, e_C {middle:.3g} of {low:g} to {high:g}"
         value = core.real("contamination", self.contamination)

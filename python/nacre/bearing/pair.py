@@ -28,7 +28,7 @@ from nacre.bearing.equilibrium import Problem, Shaft, State
 from nacre.bearing.geometry import Ring, above, bearing_from
 from nacre.bearing.iso import Edge
 from nacre.bearing.life import LINE, POINT
-from nacre.bearing.rating_life import LATER, required
+from nacre.bearing.rating_life import LATER, basic_row, compared, hours_per_revolution, required
 from nacre.bearing.rollers import TaperedRoller
 from nacre.bearing.solution import (
     STIFFNESS,
@@ -472,6 +472,8 @@ class PairLife(TableResult):
     """Life of the first bearing in revolutions; infinite without load."""
     second: float = quantity(label="second bearing")
     """Life of the second bearing in revolutions; infinite without load."""
+    basic_life: float | None = quantity()
+    """Basic rating life L_10 of ISO 281 of both in millions of revolutions; None if not known."""
     model: str
     """Model in words."""
     reliability: float = 0.9
@@ -487,13 +489,18 @@ class PairLife(TableResult):
     """What leaves the verdict unknown; None without."""
     caution: str | None = None
     """What leaves the verdict fair at best; None without."""
+    comparison: str | None = None
+    """Why the basic life differs, or is not known, as that of a single bearing."""
+    notes: tuple[str, ...] = ()
+    """Numbers beyond their plausible ranges, which were warned of."""
 
     _LATER = ("reliability", "modification_factor", "required_life", *LATER)
     _of: ClassVar[str] = "both bearings, "
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
-        return super()._restored(state | {"reliability": state.get("reliability") or 0.9})
+        usual = {"reliability": state.get("reliability") or 0.9}
+        return super()._restored(state | usual | {"notes": tuple(state.get("notes") or ())})
 
     @asked
     def verdict(self, required_life: float | None = None) -> Verdict:
@@ -509,10 +516,23 @@ class PairLife(TableResult):
             rows.append(Row(row.name, row.label, text if life < math.inf else words, life))
         if math.isfinite(self.hours):
             rows.append(Row("hours", "hours", rounded(self.hours, 4), self.hours))
+        if self.basic_life is not None and math.isfinite(self.basic_life):
+            rows.append(basic_row(self.basic_life, hours_per_revolution(self)))
         return rows
+
+    def _remarks(self) -> list[Row]:
+        return [*compared(self.comparison), *super()._remarks()]
 
     def _report_rows(self) -> Rows:
         return self._rows()
+
+
+def _both(lives: Array, slope: float) -> tuple[float, Array]:
+    """Return the life of both bearings, and the weights of the failures of each."""
+    shortest = float(lives.min())
+    shares = shortest / lives if math.isfinite(shortest) else np.ones(2)
+    weights = shares**slope
+    return shortest * float(weights.sum()) ** (-1 / slope), weights
 
 
 @frozen(eq=False)
@@ -703,17 +723,15 @@ class PairSolution(Equilibrium):
         )
         slope = LINE if isinstance(self.pair.first, TaperedRoller) else POINT
         lives = np.array([first.revolutions, second.revolutions])
-        shortest = float(lives.min())
-        shares = shortest / lives if math.isfinite(shortest) else np.ones(2)
-        both = float((shares**slope).sum()) ** (-1 / slope)
+        both, shares = _both(lives, slope)
+        shorter = min(first, second, key=lambda life: life.revolutions)
+        basic = [life for life in (first.basic_life, second.basic_life) if life is not None]
         # Each error counts by the share of failures that are those of the bearing.
         errors = np.array([first.uncertainty, second.uncertainty], dtype=np.float64)
-        error = float(np.average(errors, weights=shares**slope))
-        hours = both * min(first.hours, second.hours)
-        shorter = min(first, second, key=lambda one: one.revolutions)
+        error = float(np.average(errors, weights=shares))
         life = PairLife(
-            revolutions=both * shortest,
-            hours=hours,
+            revolutions=both,
+            hours=_both(np.array([first.hours, second.hours]), slope)[0],
             first=first.revolutions,
             second=second.revolutions,
             model=first.model,
@@ -722,6 +740,9 @@ class PairSolution(Equilibrium):
             uncertainty=None if math.isnan(error) else error,
             doubt=merged(first.doubt, second.doubt),
             caution=merged(first.caution, second.caution),
+            basic_life=_both(np.array(basic), slope)[0] if len(basic) == 2 else None,
+            comparison=first.comparison or second.comparison,
+            notes=tuple(dict.fromkeys([*first.notes, *second.notes])),
         )
         return required(life, hours_required)
 

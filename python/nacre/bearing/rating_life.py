@@ -12,20 +12,24 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.typing import among
 from nacre._tools.units import rounded
+from nacre.bearing.basic import ROLLERS, UNREAD, known_load, life_under, mean_dynamic_load
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, above
 from nacre.bearing.iso import Edge, ReferenceLife, edge_factors, equivalent_load, reference_life
-from nacre.bearing.kinds import CurvedRaceways
+from nacre.bearing.kinds import CurvedRaceways, RollerBearing
 from nacre.bearing.modified import (
     Lubrication,
     fatigue_load_limit,
     reliability_factor,
     simple_fatigue_load_limit,
 )
+from nacre.bearing.plausible import doubts_on
+from nacre.bearing.static import static_rating
 from nacre.bearing.verdict import doubts_and_cautions, life_verdict
+from nacre.results.display import number
 from nacre.results.quantities import frozen, quantity
 from nacre.results.report import Rows
-from nacre.results.rows import Row
+from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
 from nacre.results.verdict import Verdict, asked
 
@@ -41,7 +45,7 @@ EDGES = {
 """Words for the factors of a life."""
 BARRELS = "barrels have none of the standard's edge factors"
 """The same of spherical rollers."""
-LATER = ("uncertainty", "doubt", "caution")
+LATER = ("uncertainty", "doubt", "caution", "basic_life", "comparison", "notes")
 """Fields of lives that older files do not have."""
 ROUNDED = 1e-3
 """Largest difference of a sum of shares and 1: thirds with three digits are as good."""
@@ -74,6 +78,7 @@ class BearingLife(TableResult):
         *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
         *("viscosity_ratio", "contamination_factor", "required_life", *LATER),
         *("fatigue_load_limit", "simple_fatigue_load_limit"),
+        "basic_load",
     )
 
     revolutions: float = quantity()
@@ -102,8 +107,17 @@ class BearingLife(TableResult):
     """Fatigue load limit C_u [N]; None without lubrication."""
     simple_fatigue_load_limit: float | None = quantity("N", label="by C_0 alone")
     """C_u by the standard's simple formula [N]: C_0/22 or C_0/8.2."""
+    basic_life: float | None = quantity()
+    """Basic rating life L_10 of ISO 281 in millions of revolutions; None where X and Y are not
+    known."""
+    basic_load: float | None = quantity("N")
+    """Equivalent dynamic load P of ISO 281 [N], by X and Y: of a spectrum the mean one."""
     model: str
     """Model in words."""
+    comparison: str | None = None
+    """Why the basic life differs, or is not known; None of balls with one."""
+    notes: tuple[str, ...] = ()
+    """Numbers beyond their plausible ranges, which were warned of."""
     required_life: float | None = None
     """Life that is required [h], which decides the verdict; None without."""
     uncertainty: float | None = None
@@ -124,6 +138,7 @@ class BearingLife(TableResult):
         if fields.get("l10") is None:  # states of 0.1.0, of L_10r in millions of revolutions alone
             fields |= {"l10": state["revolutions"], "revolutions": state["revolutions"] * 1e6}
             fields |= {"hours": math.inf, "reliability": 0.9, "reliability_factor": 1.0}
+        fields["notes"] = tuple(fields.get("notes") or ())
         return super()._restored(fields)
 
     @asked
@@ -154,7 +169,14 @@ class BearingLife(TableResult):
             rows.append(Row("revolutions", label, text, self.revolutions))
         if math.isfinite(self.hours):
             rows.append(Row("hours", "hours", rounded(self.hours, 4), self.hours))
+        if self.basic_life is not None and self.basic_load is not None:
+            row = basic_row(self.basic_life, hours_per_revolution(self))
+            load = f"{row.text}, P {number(self.basic_load, 'N')}"
+            rows.append(row._replace(text=load))
         return [*rows, *super()._rows()]
+
+    def _remarks(self) -> list[Row]:
+        return [*compared(self.comparison), *super()._remarks()]
 
     def _report_rows(self) -> Rows:
         return self._rows()
@@ -164,10 +186,30 @@ class BearingLife(TableResult):
         return self.modification_factor is not None
 
 
+def basic_row(life: float, hours: float) -> Row:
+    """Return the row of a basic life; also in hours, where a revolution takes a finite time [h]."""
+    text = f"L10 {rounded(life, 4)} million revolutions"
+    if math.isfinite(hours):
+        text += f", {rounded(life * 1e6 * hours, 4)} h"
+    return Row("basic_life", "ISO 281, catalogue", text, life)
+
+
+def hours_per_revolution(life: BearingLife | PairLife) -> float:
+    """Return the time of a revolution [h]; infinite at rest."""
+    return life.hours / life.revolutions if life.revolutions else math.inf
+
+
+def compared(words: str | None) -> list[Row]:
+    """Return the row of why the basic life differs or is not known, if any."""
+    return [remark("catalogue", words)] if words else []
+
+
 class _Rate(NamedTuple):
     """Life of a bearing under one load."""
 
     reference: ReferenceLife
+    basic: float | None
+    """Equivalent dynamic load of ISO 281 [N]; None where it is not known."""
     cycles: float
     """Share of the time, times the speed [rad/s]."""
     least: float | None
@@ -189,15 +231,19 @@ class _Terms(NamedTuple):
         """Return the life under the load of a solution, for a share of the time."""
         bearing, cycles = solution.bearing, share * abs(speed)
         reference = reference_of(solution, self.edge, self.rotating)
+        x, y, z = solution.force
+        basic = known_load(bearing, math.hypot(x, y), abs(z))
         least = _least(solution, self.edge, reference.load_power)
         if self.limit is None:
-            return _Rate(reference, cycles, least, 1.0, None)
+            return _Rate(reference, basic, cycles, least, 1.0, None)
         limit, load = self.limit, reference.equivalent_load
         factor = self.lubrication.factor(bearing, speed, limit, load)
         if least:  # the load is then larger, and a_ISO smaller
             more = equivalent_load(bearing, least) / equivalent_load(bearing, 1.0)
             least *= self.lubrication.factor(bearing, speed, limit, load * more) / factor
-        return _Rate(reference, cycles, least, factor, self.lubrication.kappa(bearing, speed))
+        return _Rate(
+            reference, basic, cycles, least, factor, self.lubrication.kappa(bearing, speed)
+        )
 
 
 def _least(solution: BearingSolution, edge: Edge, power: float) -> float | None:
@@ -253,10 +299,10 @@ def _duties(
         raise ValueError(f"spectrum must have shares that sum to 1, got {sum(shares):g}")
     checked = []
     for place, share, (_, force, speed) in zip(places, shares, duties, strict=True):
-        number = above(f"speed of {place}", speed, -math.inf)
-        if number == 0:
+        turns = above(f"speed of {place}", speed, -math.inf, "rad/s")
+        if turns == 0:
             raise ValueError(f"speed of {place} must not be 0: at rest there are no revolutions")
-        checked.append((share / sum(shares), _conditions(solution, place, force), number))
+        checked.append((share / sum(shares), _conditions(solution, place, force), turns))
     return checked
 
 
@@ -314,7 +360,7 @@ def life_of(
     limit = _limit(solution.bearing, lubrication, limit)
     terms = _Terms(edge, rotating, lubrication, limit)
     if spectrum is None:
-        turns = solution.speed if speed is None else above("speed", speed, -math.inf)
+        turns = solution.speed if speed is None else above("speed", speed, -math.inf, "rad/s")
         rates = [terms.rate(solution, 1.0, turns)]
     elif speed is not None:
         raise ValueError("speed must not be given beside spectrum, which has speeds")
@@ -329,8 +375,24 @@ def life_of(
     if spectrum is not None:
         words += f"; Miner's sum of {len(rates)} loads"
     life = _life_of_spectrum(solution.bearing, terms, rates, (float(reliability), factor), words)
+    fastest = max(rate.cycles for rate in rates) if spectrum is None else 0.0
+    life = replace(life, notes=_notes(solution.bearing, life, terms, fastest))
     doubt, caution = doubts_and_cautions(solution, life)
     return replace(life, doubt=doubt or None, caution=caution or None)
+
+
+def _notes(bearing: Bearing, life: BearingLife, terms: _Terms, speed: float) -> tuple[str, ...]:
+    """Return what numbers of a life ask that are beyond their plausible ranges."""
+    texts = doubts_on("speed times pitch_diameter", speed * bearing.pitch)
+    load = life.equivalent_load
+    light = doubts_on("equivalent load", load, life.capacity) if load > 0 else []
+    if not light and math.isfinite(life.hours):
+        texts += doubts_on("life", life.hours)
+    texts += light
+    if terms.limit is not None and life.viscosity_ratio is not None:
+        texts += doubts_on("fatigue_load_limit", terms.limit, static_rating(bearing))
+        texts += terms.lubrication.doubts(life.viscosity_ratio)
+    return tuple(texts)
 
 
 Life = TypeVar("Life", "BearingLife", "PairLife")
@@ -371,6 +433,9 @@ def _life_of_spectrum(
         left = [life * (rate.least or 0.0) for rate, life in zip(rates, lives, strict=True)]
         uncertainty = 1 - _harmonic(shares, left) / modified if math.isfinite(modified) else 0.0
     revolutions = reliability[1] * modified * 1e6
+    loads = [rate.basic for rate in rates if rate.basic is not None]
+    basic = mean_dynamic_load(bearing, loads, shares) if len(loads) == len(rates) else None
+    is_roller = isinstance(bearing, RollerBearing)
     return BearingLife(
         revolutions=revolutions,
         hours=revolutions * 2 * math.pi / turned / 3600 if turned else math.inf,
@@ -387,6 +452,9 @@ def _life_of_spectrum(
         contamination_factor=terms.lubrication.cleanliness(bearing)[0] if is_known else None,
         fatigue_load_limit=terms.limit,
         simple_fatigue_load_limit=simple_fatigue_load_limit(bearing) if is_known else None,
+        basic_life=None if basic is None else life_under(bearing, basic),
+        basic_load=basic,
+        comparison=UNREAD if basic is None else ROLLERS if is_roller else None,
         model=words,
         uncertainty=uncertainty,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -304,7 +305,13 @@ class BearingSolution(Equilibrium):
     @derived("million revolutions")
     def reference_life(self) -> float:
         """Life of ISO/TS 16281 [million revolutions], with the standard's edge factors."""
-        return self.life().l10
+        return self._reference().l10
+
+    def _reference(self) -> BearingLife:
+        """Return the life without lubrication and without warnings, for its verdict."""
+        oil = Lubrication(None, None, None, None, additives=False)
+        life = life_of(self, "standard", None, None, 0.9, oil, None, None)
+        return required(life, self.required_life)
 
     @property
     @derived()
@@ -356,7 +363,7 @@ class BearingSolution(Equilibrium):
         >>> solution.verdict().level, solution.verdict(required_life=250e3).level
         ('good', 'bad')
         """
-        life = required(self._life or self.life(), required_life)
+        life = required(self._life or self._reference(), required_life)
         return bearing_verdict({"": self}, life, self._safety(static_safety))
 
     def _safety(self, static_safety: float | None) -> float | None:
@@ -508,7 +515,7 @@ class BearingSolution(Equilibrium):
             Angular velocity of the ring that rotates [rad/s], for hours; by default that of
             `solve`.
         reliability : float, optional
-            Share of bearings that reach the life: 0.9, 0.95 to 0.99 in hundredths, or 0.999.
+            Share of bearings that reach the life, from 0.9 to 0.9995: `reliability_factor`.
         viscosity_ratio : float, optional
             Viscosity ratio κ, at least 0.1. It, or one of the two arguments below, makes the life
             the modified one, ``a_1 a_ISO L_10r``; `contamination` must be given, too.
@@ -572,6 +579,8 @@ class BearingSolution(Equilibrium):
         life = life_of(
             self, edge, rotating, speed, reliability, lubrication, fatigue_load_limit, spectrum
         )
+        for text in life.notes:
+            warnings.warn(text, core.NacreWarning, stacklevel=2)
         return required(life, self.required_life if required_life is None else required_life)
 
     def static_load(self) -> StaticLoad:

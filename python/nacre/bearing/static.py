@@ -135,11 +135,7 @@ def equivalent_static_load(bearing: Bearing, radial: float, axial: float = 0.0) 
             f"bearing must be a cylindrical roller bearing, or a ball bearing of a contact angle "
             f"up to 45°, for the factors of ISO 76, got a {type(bearing).__name__}"
         )
-    forces = {"radial": core.real("radial", radial), "axial": core.real("axial", axial)}
-    for name, force in forces.items():
-        if not (math.isfinite(force) and force >= 0):
-            raise ValueError(f"{name} must be finite and at least 0, got {force!r}")
-    radial, axial = forces["radial"], forces["axial"]
+    radial, axial = checked_forces(radial, axial)
     if is_roller:
         if axial:
             raise ValueError(f"axial must be 0 of rollers without a contact angle, got {axial!r}")
@@ -148,6 +144,15 @@ def equivalent_static_load(bearing: Bearing, radial: float, axial: float = 0.0) 
     if angle := math.degrees(bearing.nominal_angle):
         factors = 0.5, float(np.interp(angle, list(AXIAL), list(AXIAL.values())))
     return max(radial, factors[0] * radial + factors[1] * axial)
+
+
+def checked_forces(radial: float, axial: float) -> tuple[float, float]:
+    """Return finite forces of at least 0, or raise an error."""
+    forces = {"radial": core.real("radial", radial), "axial": core.real("axial", axial)}
+    for name, force in forces.items():
+        if not (math.isfinite(force) and force >= 0):
+            raise ValueError(f"{name} must be finite and at least 0, got {force!r}")
+    return forces["radial"], forces["axial"]
 
 
 @frozen()

@@ -87,7 +87,7 @@ def bearing_verdict(
 def doubts_and_cautions(solution: BearingSolution, life: BearingLife) -> tuple[str, str]:
     """Return what leaves the life of a solution unknown, and what fair at best: "" for nothing."""
     report, bearing = solution.report, solution.bearing
-    notices = [*report.warnings, *(report.contact_kinds or ())]
+    notices = [*report.warnings, *(report.contact_kinds or ()), *life.notes]
     notices += [BARE] if bearing.layered else []
     notices += [] if _is_steel(bearing) else [NOT_STEEL]
     notices += ["above half of the rating"] if life.equivalent_load > life.capacity / 2 > 0 else []
