@@ -15,7 +15,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache
+from functools import lru_cache
 from types import TracebackType
 
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
@@ -108,7 +108,7 @@ SPELLINGS = str.maketrans(
 )
 
 
-@cache
+@lru_cache
 def _measure(unit: str) -> tuple[Fraction, dict[str, int]] | None:
     """Return the exact size in SI, and the powers of kg, m, s and rad, of a unit as it is typed.
 

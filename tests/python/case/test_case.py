@@ -213,7 +213,8 @@ def test_stresses_of_a_study_have_the_friction_of_the_case(tmp_path: Path) -> No
 
 
 ERRORS = {
-    'radius = 5e-3 -> radius = "5"': "shape.radius: must be a finite number, got '5'",
+    'radius = 5e-3 -> radius = "5"': "shape.radius: must be a number in m or in another "
+    "unit of its kind, got '5'",
     "radius = 5e-3 -> radius = -5": "shape: radius must be that of a convex shape",
     "radius = 5e-3 -> radius = nan": "shape.radius: must be a finite number, got nan",
     "radius = 5e-3 -> ": "shape.radius: this key is missing",
@@ -513,7 +514,7 @@ def test_nested_sums_are_refused_or_solved() -> None:
         ({"cells": 8, "width": 1, "center": [0, 0]}, "grid: center must be a number for a line"),
         ({"shape": [8, 8], "size": [1, 1], "center": 1}, "grid: center must be a pair of numbers"),
         (
-            {"shape": [8, 8], "size": [1, 1], "center": "0"},
+            {"shape": [8, 8], "size": [1, 1], "center": "middle"},
             "grid.center: must be a finite number or a pair",
         ),
     ],
