@@ -12,6 +12,7 @@ import time
 from collections import Counter
 from concurrent.futures import CancelledError, Executor, Future
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -32,6 +33,7 @@ HELD = 5.0
 MODULE = f"""
 import os, signal, threading, time
 from pathlib import Path
+from types import SimpleNamespace
 
 FOLDER = Path(__file__).parent
 
@@ -184,3 +186,31 @@ def test_a_lost_cluster_is_a_sentence_and_finished_cases_are_kept(
     assert kept(tmp_path) == loads["load"][:cases]
     study = nacre.sweep(CASE, loads, executor=Lost(3 - cases), **options)  # just enough
     assert study.identical(nacre.sweep(CASE, loads, outputs=["approach"]))
+
+
+class Deadly(Executor):
+    """A cluster of which each worker dies that solves the first case."""
+
+    def __init__(self) -> None:
+        self.error: Exception | None = importlib.import_module("distributed").KilledWorker(
+            "case", SimpleNamespace(address="tcp://a"), 3
+        )
+
+    def submit(self, function: Any, /, *arguments: Any, **keywords: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        if self.error is not None:
+            future.set_exception(self.error)
+            self.error = None
+        else:
+            future.set_result(function(*arguments, **keywords))
+        return future
+
+
+def test_the_other_cases_go_on_where_all_workers_of_a_case_have_died() -> None:
+    pytest.importorskip("distributed")
+    loads = {"load": [1.0, 2.0, 3.0]}
+    with pytest.warns(nacre.NacreWarning, match="1 of 3 cases failed"):
+        study = nacre.sweep(CASE, loads, outputs=["approach"], executor=Deadly())
+    assert study.error[0].item().startswith("KilledWorker: ")
+    expected = nacre.sweep(CASE, {"load": [2.0, 3.0]}, outputs=["approach"])
+    assert study[{"load": [1, 2]}].approach.identical(expected.approach)
