@@ -78,7 +78,7 @@ def equivalent_dynamic_load(bearing: Bearing, radial: float, axial: float = 0.0)
     >>> from nacre.bearing import DeepGrooveBall, equivalent_dynamic_load
     >>> bearing = DeepGrooveBall(count=9, diameter=9.525e-3, pitch_diameter=46e-3)  # 6206
     >>> round(equivalent_dynamic_load(bearing, radial=1000.0, axial=563.0))
-    1683
+    1523
     """
     load = known_load(bearing, radial, axial)
     if load is None:
