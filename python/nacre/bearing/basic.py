@@ -1,6 +1,6 @@
 """Basic rating life of ISO 281, which catalogues and contracts have: ``(C/P)^p`` with X and Y.
 
-ISO 281:2007 was read for the life (formulae (2) and (14)); its tables of X and Y were not. Those of
+The exponents p are those of `Standards`. The standard's tables of X and Y were not read: those of
 deep-groove and of angular contact ball bearings of 15, 30 and 40° are as Koyo's catalogue prints
 them, those of 25° as LYC's does, those of 20, 35 and 45° as a program does; those of rollers as two
 programs do. Between contact angles and relative loads they are linear. Contact angles of balls
@@ -20,7 +20,11 @@ from nacre.bearing.kinds import RollerBearing, checked_bearing
 from nacre.bearing.static import checked_forces
 
 RELATIVE = (0.172, 0.345, 0.689, 1.03, 1.38, 2.07, 3.45, 5.17, 6.89)
-"""Relative axial loads ``f_0 F_a/C_0``, which are ``F_a/(Z D²)`` [N/mm²]: ISO 76, formula (1)."""
+"""Relative axial loads ``F_a/(Z D²)`` [N/mm²].
+
+They are ``f_0 F_a/C_0`` of deep-groove bearings, with C_0 of ISO 76:2006, formula (1). Those that
+are printed for 15° are 1/cos 15° times as large, which is the same load.
+"""
 DEEP_GROOVE = (2.30, 1.99, 1.71, 1.55, 1.45, 1.31, 1.15, 1.04, 1.00)
 """Factors Y of deep-groove ball bearings under these loads; X is 0.56."""
 FLATTEST = (1.47, 1.40, 1.30, 1.23, 1.19, 1.12, 1.02, 1.00, 1.00)
@@ -71,14 +75,14 @@ def equivalent_dynamic_load(bearing: Bearing, radial: float, axial: float = 0.0)
     Of one row ``P = max(F_r, X F_r + Y F_a)``, as X + Y e = 1, to 1 % of the rounded numbers of
     balls: 0.4 and ``0.4 cot α`` of rollers, 0.56 and 1 to 2.3 of deep-groove balls, which fall with
     ``f_0 F_a/C_0``. Of two rows of rollers the larger one of ``F_r + 0.45 cot α F_a`` and ``0.67
-    F_r + 0.67 cot α F_a``. The standard's tables 3 and 8, as catalogues and programs quote them.
+    F_r + 0.67 cot α F_a``. Catalogues and programs quote them.
 
     Examples
     --------
     >>> from nacre.bearing import DeepGrooveBall, equivalent_dynamic_load
     >>> bearing = DeepGrooveBall(count=9, diameter=9.525e-3, pitch_diameter=46e-3)  # 6206
     >>> round(equivalent_dynamic_load(bearing, radial=1000.0, axial=563.0))
-    1683
+    1523
     """
     load = known_load(bearing, radial, axial)
     if load is None:

@@ -19,8 +19,8 @@ from nacre.bearing.static import static_rating
 TOLERANCE = 0.05
 """Difference of ratings that a catalogue may have: fifteen of ball bearings are within 0.8 %."""
 IMPROVED = 0.07
-"""Difference above ISO 281 that a maker's improved class may have: 4, 5 and 6 % of SKF's 6305, 6309
-and 6205."""
+"""Difference above ISO 281 that a maker's improved class may have: 4, 5 and 6 % of a 6305, a 6309
+and a 6205."""
 FEWEST, MOST = 5, 40
 """Numbers of balls between which an estimate is looked for."""
 ROOM = 0.95

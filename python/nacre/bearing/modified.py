@@ -132,7 +132,7 @@ def reliability_factor(reliability: float) -> float:
     --------
     >>> from nacre.bearing import reliability_factor
     >>> reliability_factor(0.95), round(reliability_factor(0.93), 3)
-    (0.64, 0.786)
+    (0.64, 0.792)
     """
     value = core.real("reliability", reliability)
     least, most = min(RELIABILITY), max(RELIABILITY)

@@ -416,7 +416,7 @@ def test_any_reliability_has_a_factor() -> None:
     shares = np.linspace(0.9, 0.9995, 400)
     factors = [reliability_factor(share) for share in shares]
     assert all(before > after for before, after in itertools.pairwise(factors))
-    # Weibull's formula of ISO/TR 1281-2, with three digits of the table: half of a hundredth.
+    # Weibull's law, of which the table has two digits.
     weibull = 0.05 + 0.95 * (np.log(shares) / math.log(0.9)) ** (1 / 1.5)
     assert np.abs(weibull - factors).max() < 6e-3
     # A straight line in the share itself would be some 0.02 too large here.
@@ -427,7 +427,7 @@ def test_any_reliability_has_a_factor() -> None:
 
 
 CATALOGUE = [
-    # SKF: bore, outside diameter [mm], C, C_0 [N]; numbers of balls by eye.
+    # A maker's improved class: bore, outside diameter [mm], C, C_0 [N]; numbers of balls by eye.
     (25, 62, 23400.0, 11600.0, 7),
     (25, 52, 14800.0, 7800.0, 9),
     (30, 62, 20300.0, 11200.0, 9),

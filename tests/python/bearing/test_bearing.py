@@ -364,7 +364,7 @@ def test_solution_is_saved_loaded_pickled_and_printed(
 
 def test_bearings_are_in_si_whatever_units_are_set(tmp_path: Path) -> None:
     bearing = DeepGrooveBall(**BALLS)
-    solution = bearing.solve(force=(20.0, 0.0, None), cells=(32, 32))
+    solution = bearing.solve(force=(50.0, 0.0, None), cells=(32, 32))
     ratio = nacre.bearing.life_ratio(solution, solution, nacre.bearing.LundbergPalmgren())
     found = solution, solution.life(), ratio
 
