@@ -29,11 +29,11 @@ MODULI = (1e3, 1.2e12)
 INSTEAD = {*SINGULAR, "large contact", "coarse", "coarse spots"}
 """Warnings that say of a pressure that it is too large, or not known."""
 
-Found = Iterator[tuple[str, str]]
+Doubts = Iterator[tuple[str, str]]
 """Kinds and texts of warnings."""
 
 
-def of_contact(solution: Solution, report: Report) -> Found:
+def of_contact(solution: Solution, report: Report) -> Doubts:
     """Yield what is not plausible of pressure, layers and moduli; moduli where units are known."""
     bodies = [b for b in (report.body, report.counterbody) if isinstance(b, core.HalfSpace)]
     if solution.contact_area == 0 or not bodies:
@@ -71,7 +71,7 @@ def of_contact(solution: Solution, report: Report) -> Found:
             return
 
 
-def of_friction(solution: FrictionSolution) -> Found:
+def of_friction(solution: FrictionSolution) -> Doubts:
     """Yield what is not plausible of friction and creepage."""
     yield from of_coefficient(solution.friction)
     largest = max(map(abs, solution.creepage or (0.0,)))
@@ -79,16 +79,16 @@ def of_friction(solution: FrictionSolution) -> Found:
     if largest > MOST["creepage"][0] and not is_large:
         yield (
             "large creepage",
-            f"the creepage is {largest:.3g}, and above 0.05 wheels do not roll: 0.1 % are 0.001",
+            f"the creepage is {largest:.3g}, and wheels reach 0.05 at most: is it in per cent?",
         )
 
 
-def of_coefficient(friction: Any) -> Found:
+def of_coefficient(friction: Any) -> Doubts:
     """Yield what is not plausible of coefficients of friction."""
     largest = 0.0 if friction is None else float(np.max(friction, initial=0.0))
     if MOST["friction"][0] < largest < STICKS:
         yield (
             "high friction",
-            f"the coefficient of friction is {largest:.3g}, and materials have 3 at most: "
-            "30 % are 0.3",
+            f"the coefficient of friction is {largest:.3g}, and materials reach 3 at most: is it "
+            "in per cent?",
         )

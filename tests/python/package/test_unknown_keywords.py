@@ -85,7 +85,7 @@ ANGULAR = bearing.AngularContactBall(
     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
 )
 RATE: dict[str, Any] = {"rate": 1e-16}
-CATALOGUE = {"bore": 0.03, "outside_diameter": 0.062, "capacity": 19.5e3}
+CATALOGUE: dict[str, Any] = {"bore": 0.03, "outside_diameter": 0.062, "capacity": 19.5e3}
 CALLS: dict[str, Callable[[], object]] = {
     "solve": lambda: nacre.solve(BALL, STEEL, load=10.0, **WRONG),
     "slide": lambda: nacre.slide(BALL, STEEL, load=10.0, **WRONG),

@@ -45,6 +45,7 @@ def test_a_history_is_a_dataset() -> None:
     assert nacre.friction.history([SOLVED["line slid"]]).force.units == "N/m"
 
 
+@pytest.mark.filterwarnings("ignore:the creepage is 0.1")
 @pytest.mark.parametrize("direction", ["+x", "-x", "+y", "-y"])
 @pytest.mark.parametrize("lateral", [False, True])
 def test_a_creep_curve_counts_along_and_across_rolling(direction: str, lateral: bool) -> None:

@@ -147,7 +147,7 @@ def test_on_a_rigid_base_the_vtk_file_ends_above_it(tmp_path: Path) -> None:
         ("a.vtr", {"depths": [float("nan")]}, ValueError, "z must be finite and at least 0"),
         ("a.vtr", {"depths": [0.0], "friction": -1.0}, ValueError, "friction must be at least 0"),
         ("a.vtr", {"depths": [0.0], "x": 0.0}, TypeError, "options must be among body, .* got x"),
-        ("a.vtr", {"friction": 0.1}, TypeError, "friction: without depths there are no such"),
+        ("a.vtr", {"friction": 0.1}, TypeError, "'friction': without depths there are no options"),
         ("a.vtr", {"whole": True}, ValueError, r"must end in \.csv where whole is given, got"),
     ],
 )
