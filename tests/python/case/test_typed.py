@@ -279,7 +279,7 @@ WARNED: list[tuple[dict[str, Any], dict[str, Any], str]] = [
     (
         CONTACT,
         {"roll": ROLL | {"creepage": {"along": 0.1}}},
-        r"creepage is 0\.1, .*0\.1 % are 0\.001",
+        r"creepage is 0\.1, .*is it in per cent",
     ),
     (
         CONTACT,
