@@ -228,11 +228,13 @@ class! {
             text_signature = "(material, thickness, interface='bonded', name=None)"
         )]
         fn new(
-            material: PyElastic,
+            material: &Bound<'_, PyAny>,
             thickness: Real,
             interface: PyInterface,
             name: Option<&str>,
         ) -> PyResult<Self> {
+            let refuse = |_| wrong_body("material must be an Elastic", material);
+            let material = material.extract::<PyElastic>().map_err(refuse)?;
             let layer = Layer::new(material.0, thickness.0)?.with_interface(interface.0);
             Ok(Self(match name {
                 Some(name) => layer.with_name(name)?,
@@ -538,10 +540,9 @@ pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {
     }
     match object.extract::<PyElastic>() {
         Ok(material) => Ok(material.0.into()),
-        Err(_) => Err(PyTypeError::new_err(format!(
-            "substrate must be an Elastic, nacre.RIGID or nacre.FREE, got {}",
-            Repr(object)
-        ))),
+        Err(_) => {
+            Err(wrong_body("substrate must be an Elastic, nacre.RIGID or nacre.FREE", object))
+        }
     }
 }
 
@@ -568,6 +569,12 @@ pub(super) fn half_space(object: &Bound<'_, PyAny>) -> PyResult<HalfSpace> {
 }
 
 fn no_body(kinds: &str, object: &Bound<'_, PyAny>) -> PyErr {
-    let got = Repr(object);
-    PyTypeError::new_err(format!("body and counterbody must be {kinds}, got {got}"))
+    wrong_body(&format!("body and counterbody must be {kinds}"), object)
+}
+
+/// Error on an object that is no body or material; a card of a material has one.
+fn wrong_body(must: &str, object: &Bound<'_, PyAny>) -> PyErr {
+    let is_card = object.hasattr("elastic").unwrap_or(false);
+    let hint = if is_card { ": give its .elastic" } else { "" };
+    PyTypeError::new_err(format!("{must}, got {}{hint}", Repr(object)))
 }

@@ -151,6 +151,14 @@ VALUES = {
 }
 
 TYPES = {
+    **dict.fromkeys(
+        (
+            "HalfSpace(nacre.materials['100Cr6'])",
+            "Layer(nacre.materials['100Cr6'], 1.0)",
+            "nacre.solve(BALL, nacre.materials['100Cr6'], load=1.0)",
+        ),
+        r"Elastic.*got .*100Cr6.*: give its \.elastic",
+    ),
     "Elastic('hard', 0.3)": r"(?s)number.*young",
     "Elastic(1j, 0.3)": r"(?s)number.*young",
     "Elastic(np.complex128(1 + 2j), 0.3)": r"(?s)real number, got np.complex128.*young",
@@ -158,7 +166,7 @@ TYPES = {
     "Layer(STEEL, np.complex64(1))": r"(?s)real number, got .*thickness",
     "Grid((4, 4), (1.0, np.complex128(1)))": r"(?s)pair of numbers, got .*size",
     "Elastic(1.0, None)": r"(?s)number.*poisson",
-    "Layer('steel', 1.0)": r"(?s)Elastic.*material",
+    "Layer('steel', 1.0)": "material must be an Elastic, got 'steel'",
     "Layer(STEEL, 'thin')": r"(?s)number.*thickness",
     "Layer(STEEL, 1.0, 3)": r"interface must be .*Spring, got 3",
     "HalfSpace('steel')": r"substrate must be an Elastic, .*RIGID or .*FREE, got .*steel",
