@@ -31,9 +31,8 @@ PATTERNS = {habit: re.compile(pattern, re.IGNORECASE) for habit, pattern in HABI
 
 # What is not prose in a page: programs, options of directives, formulas, tables, headings.
 FENCE = re.compile(r"^([`~]{3,})\{?(?:code-block|image|figure|math|\w*).*?^\1`*$", re.DOTALL | re.M)
-NOT_PROSE = re.compile(
-    r"^(?:\||#|:\w|:::|\(\w+\)=|    \S)[^\n]*$|<!--.*?-->", re.MULTILINE | re.DOTALL
-)
+NOT_PROSE = re.compile(r"^(?:\||#|:\w|:::|\(\w+\)=)[^\n]*$|<!--.*?-->", re.MULTILINE | re.DOTALL)
+INDENTED = re.compile(r"(?<=\n\n)(?: {4}[^\n]*\n)+")
 DISPLAYED = re.compile(r"\$\$.*?\$\$", re.DOTALL)
 FORMULA = re.compile(r"\$[^$]+\$")
 CODE = re.compile(r"`[^`]+`")
@@ -49,7 +48,7 @@ MESSAGE = re.compile(r"(?:\S+\s+){3}\S")
 
 def prose(page: str) -> Iterator[str]:
     """Yield the sentences of a page."""
-    text = DISPLAYED.sub("", NOT_PROSE.sub("", FENCE.sub("\n\n", page)))
+    text = DISPLAYED.sub("", NOT_PROSE.sub("", INDENTED.sub("", FENCE.sub("\n\n", page))))
     text = LINK.sub("]", CODE.sub("`code`", FORMULA.sub("$formula$", text)))
     for paragraph in PARAGRAPH.split(text):
         yield from SENTENCE.split(" ".join(paragraph.split()))
