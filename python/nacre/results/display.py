@@ -18,7 +18,17 @@ import numpy.typing as npt
 
 from nacre._core import Elastic, Free, HalfSpace, Response, Rigid, Spring
 from nacre._tools.typing import Planned
-from nacre._tools.units import SI, Scale, Within, display_units, printable, rounded, written
+from nacre._tools.units import (
+    SI,
+    Scale,
+    System,
+    Within,
+    display_units,
+    printable,
+    rounded,
+    system,
+    written,
+)
 from nacre.results.quantities import Quantity
 from nacre.results.rows import Row, remark
 
@@ -107,6 +117,11 @@ def shown_in(units: str) -> Iterator[None]:
         _units.reset(token)
 
 
+def shown_system() -> System:
+    """Return the units in which numbers are shown."""
+    return system() if (units := _units.get()) is None else System(units)
+
+
 def number(value: float, unit: str, digits: int = 4) -> str:
     """Return a number, whose SI unit is given, with the unit that is set or `shown_in`."""
     scale = scale_of(value, unit)
@@ -193,8 +208,11 @@ def without_rounding(values: Sequence[float]) -> list[float]:
 
 
 def pair(values: Iterable[float], unit: str) -> str:
-    """Return components with their units."""
-    return f"({', '.join(number(value, unit) for value in values)})"
+    """Return components with their unit, one of all."""
+    numbers = [*values]
+    scale = scale_of(max((abs(v) for v in numbers if math.isfinite(v)), default=0.0), unit)
+    texts = (f"{rounded(scale.factor * v, 4)} {scale.unit}".rstrip() for v in numbers)
+    return f"({', '.join(texts)})"
 
 
 def fields(instance: Any, units: Mapping[str, str]) -> list[Row]:
