@@ -316,10 +316,11 @@ def _leaf(value: object, unit: str) -> str:
 
 
 def other_numbers(result: tables.HasQuantities) -> list[Row]:
-    """Return the quantities of a result that its printed table leaves out."""
+    """Return the quantities of a result that its printed table leaves out, if they are not 0."""
     rows = []
     for row, value in tables.numbers(result):
-        if not row.label and "." not in row.path and np.isfinite(value).all():
+        is_known = np.isfinite(value).all() and np.any(value)
+        if not row.label and "." not in row.path and is_known:
             number, unit = display.pair if row.dims else display.number, result._si(row)
             rows.append(Row(row.name, row.words, number(value, unit), value, unit))
     return rows
