@@ -14,6 +14,7 @@ import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from itertools import dropwhile
 from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
@@ -376,7 +377,8 @@ def aligned(rows: Sequence[Sequence[str]], side: str = ">") -> list[str]:
         ["  ".join(f"{row[k]:{side}{widths[k]}}" for k in block).rstrip() for row in rows]
         for block in blocks
     ]
-    return [line for number, part in enumerate(parts) for line in ([""] * (number > 0) + part)]
+    filled = (dropwhile(lambda line: not line, part) for part in parts)  # heads of fewer lines
+    return [line for number, part in enumerate(filled) for line in ([""] * (number > 0) + [*part])]
 
 
 def _with_broken_heads(rows: Sequence[Sequence[str]]) -> list[Sequence[str]]:

@@ -189,6 +189,8 @@ FORBIDDEN = {
 }
 METRES = r"\d [pnµmk]?(m|N m|N/m|J/m)(?![\w/²³])|\[[pnµmk]?(m|N m|N/m)\]"
 """A metre beside a number or in a heading: a prefix makes µm and nm of it, and mm."""
+UNSCALED = "distance|sliding|[Tt]hrough|worn|springs|contact point"
+"""Rows in metres in all units, and of numbers that only SI has."""
 SMALL = r"\d[pnµ]?e-(1[3-9]|[2-9]\d)"
 
 
@@ -203,7 +205,7 @@ def check_words(source: str, units: str) -> None:
         is_small = re.search("rate|springs|contact point", row)
         assert is_small or not re.search(SMALL, row), row
         # Distances that bodies slide are in metres and kilometres in all units.
-        if units != "SI" and not re.search("distance|sliding|through|Through|worn|springs|contact point", row):
+        if units != "SI" and not re.search(UNSCALED, row):
             found = [m[0] for m in re.finditer(METRES, row)]
             assert not [text for text in found if not re.search(r"\b[pnµm]m\b", text)], row
 
