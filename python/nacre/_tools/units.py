@@ -403,7 +403,8 @@ class Scale:
         if dimension_size is None:
             return cls(1.0, unit)
         dimension, size = dimension_size
-        return cls._readable(largest, size, dimension, unit)
+        own = unit if system() is SI or largest else system().unit(dimension)[1]
+        return cls._readable(largest, size, dimension, own)
 
     @classmethod
     def _readable(cls, largest: float, size: float, dimension: str, own: str) -> Scale:
@@ -422,6 +423,8 @@ class Scale:
         if units is not SI:
             target, name = units.unit(dimension)
             factor = 1.0 if size == target else size / target
+            # A small moment, or a force or an energy per length, has no metre among millimetres.
+            low = 0.0 if dimension in ("N m", "N/m", "J/m") else low
             if units.imperial or low <= abs(largest) * factor < high:
                 return cls(factor, name)
         # A number just below 1000 is printed as 1000.

@@ -31,12 +31,11 @@ from nacre.bearing.life import LINE, POINT
 from nacre.bearing.rating_life import LATER, basic_row, compared, hours_per_revolution, required
 from nacre.bearing.rollers import TaperedRoller
 from nacre.bearing.solution import (
-    STIFFNESS,
     VECTORS,
     BearingReport,
     BearingSolution,
     Equilibrium,
-    stiffness_rows,
+    stiffness_table,
 )
 from nacre.bearing.solving import (
     as_arrays,
@@ -55,7 +54,7 @@ from nacre.bearing.verdict import bearing_verdict, life_verdict
 from nacre.results import display, files
 from nacre.results.charts import Picture
 from nacre.results.quantities import AXIS, frozen, quantity
-from nacre.results.report import Rows, Table, input_rows, table
+from nacre.results.report import Rows, Table, input_rows
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
 from nacre.results.values import decode, encode, refusing
@@ -769,8 +768,11 @@ class PairSolution(Equilibrium):
         values = {field.name: getattr(self.pair, field.name) for field in fields(self.pair)}
         names = ("model", "rotation", "speed", "rotating", "cells")
         values |= {name: getattr(self.first, name) for name in names}
+        if self.pair.second == self.pair.first:
+            values["second"] = "as the first"
         units = keyword_units(type(self.pair), type(self.pair.first), Operation)
-        return input_rows(values, units)
+        loads = [row for row in self._rows() if row.key in ("force", "moment")]
+        return [*input_rows(values, units), *loads]
 
     def _report_rows(self) -> Rows:
         rows = [
@@ -778,7 +780,7 @@ class PairSolution(Equilibrium):
             for name, bearing in zip(NAMES, self.bearings, strict=True)
             for row in bearing._report_rows()
         ]
-        return [*self._rows(), *rows]
+        return [*(() if self._life is None else self._life._rows()), *self._rows(), *rows]
 
     def _charts(self) -> Sequence[Picture]:
         return [
@@ -793,10 +795,10 @@ class PairSolution(Equilibrium):
             for name, bearing in zip(NAMES, self.bearings, strict=True)
             for elements in bearing._tables()
         ]
-        return [table(STIFFNESS, stiffness_rows(self.tangent)), *tables]
+        return [stiffness_table(self.tangent), *tables]
 
     def _model(self) -> Rows:
-        return self.first._model()
+        return [*self.first._model(), *(() if self._life is None else self._life._model())]
 
     def _notebook_picture(self) -> bytes | None:
         return self._heavier._notebook_picture()

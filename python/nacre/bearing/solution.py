@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -31,7 +31,7 @@ from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.charts import Axis, Bars, Chart, Curve, Look, Picture, contact_charts
 from nacre.results.quantities import AXIS, Quantity, derived, frozen, quantity
-from nacre.results.report import Rows, Table, input_rows, notebook_picture, table
+from nacre.results.report import ANGLE, MINUTES, Rows, Table, input_rows, notebook_picture, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.values import decode, encode, refusing
@@ -74,8 +74,6 @@ VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
 PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
 """Dimensions of numbers of each contact of a bearing, and of its laminae."""
-STIFFNESS = "Stiffness in N, N m, m and rad"
-"""Title of the table of a stiffness."""
 NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
 """What a report says of the model."""
 
@@ -150,11 +148,21 @@ class BearingReport(Result):
         )
 
 
-def stiffness_rows(tangent: Array) -> list[list[object]]:
-    """Return the rows of the table of a stiffness ``(5, 5)``, with names."""
+def stiffness_table(tangent: Array) -> Table:
+    """Return the table of a stiffness ``(5, 5)``, in the units that are shown."""
+    units = display.shown_system()
+    size, metre = units.unit("m")
+    lengths, angles, moments = np.array([size] * 3 + [1e-3] * 2), "mrad", units.unit("N m")[1]
+    tangent = tangent * lengths / np.array([1.0] * 3 + [size] * 2)[:, None] / units.unit("N")[0]
+    force = units.unit("N")[1]
+    title = (
+        f"Stiffness: F over δ in {force}/{metre}, F over θ in {force}/{angles}, "
+        f"M over δ in {force}, M over θ in {moments}/{angles}"
+    )
     head = ["", *(f"{name}_{axis}" for name, axis in zip("δδδθθ", "xyzxy", strict=True))]
     names = [f"{name}_{axis}" for name, axis in zip("FFFMM", "xyzxy", strict=True)]
-    return [head, *([name, *row] for name, row in zip(names, tangent.tolist(), strict=True))]
+    rows = ([name, *row] for name, row in zip(names, tangent.tolist(), strict=True))
+    return table(title, [head, *rows])
 
 
 class Equilibrium(Shown, Result, is_base=True):
@@ -686,7 +694,21 @@ class BearingSolution(Equilibrium):
     def _inputs(self) -> Rows:
         names = ("bearing", "model", "rotation", "speed", "rotating", "cells")
         units = keyword_units(type(self.bearing), Operation)
-        return input_rows({name: getattr(self, name) for name in names}, units)
+        inputs = input_rows({name: getattr(self, name) for name in names}, units)
+        return [*inputs, *self._given()]
+
+    def _given(self) -> Iterator[Row]:
+        """Yield the loads and motions that were given along each direction."""
+        names = (("displacement", "force"),) * 3 + (("tilt", "moment"),) * 2
+        for k, is_loaded in enumerate(self.loaded_directions or ()):
+            name, axis = names[k][is_loaded], "xyzxy"[k]
+            value, unit = self._rounded(name, float(getattr(self, name)[k % 3])), ""
+            if name == "tilt":
+                text = f"{rounded(MINUTES * value, ANGLE)} minutes of arc"
+            else:
+                unit = next(row.si() for row in self._QUANTITIES if row.name == name)
+                text = display.number(value, unit, ANGLE)
+            yield Row(f"{name}_{axis}", f"{name} along {axis}", text, value, unit)
 
     def _report_rows(self) -> Rows:
         """Return the numbers, the dimensions that follow from others, and the rating."""
@@ -703,10 +725,16 @@ class BearingSolution(Equilibrium):
         return [*self._rows(), *rows]
 
     def _tables(self) -> Sequence[Table]:
-        elements = self._elements(self._rounded)  # rounding is 0
+        def shown(name: str, value: float) -> float:
+            rounded = self._rounded(name, value)  # rounding is 0
+            return MINUTES * rounded if name == "tilts" else rounded
+
+        head, *rows = self._elements(shown)
+        words = [f"{name} [minutes]" if str(name).startswith("tilt ") else name for name in head]
+        elements = [words, *rows]
         return [
             table("Elements and rings", elements),
-            table(STIFFNESS, stiffness_rows(self.tangent)),
+            stiffness_table(self.tangent),
         ]
 
     def _model(self) -> Rows:

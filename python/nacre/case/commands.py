@@ -109,8 +109,10 @@ def solve(
 ) -> None:
     """Solve the contact, wear, indentation or bearing of a case file."""
     from nacre.case import running
+    from nacre.results.display import wrapped
 
-    running.solve(case, save or [], initial, units, as_json)
+    with wrapped():
+        running.solve(case, save or [], initial, units, as_json)
 
 
 @app.command(cls=Command)
@@ -138,8 +140,10 @@ def sweep(
 ) -> None:
     """Solve the study of a case file, or the rest of it after a kill."""
     from nacre.case import running
+    from nacre.results.display import wrapped
 
-    running.sweep(case, store, save or [], retry, units, as_json)
+    with wrapped():
+        running.sweep(case, store, save or [], retry, units, as_json)
 
 
 @app.command(cls=Command)
@@ -158,8 +162,10 @@ def indent(
 ) -> None:
     """Solve the indentation of a case file, as solve does."""
     from nacre.case import running
+    from nacre.results.display import wrapped
 
-    running.indent(case, save or [], units, as_json)
+    with wrapped():
+        running.indent(case, save or [], units, as_json)
 
 
 def _case_error(message: str) -> ValueError:

@@ -102,6 +102,12 @@ class Case:
         """Units of the numbers, as `nacre.display_units` takes them."""
         return self._table.units
 
+    @property
+    def signed(self) -> dict[str, str]:
+        """Texts of the table report, by the words of the head of a report."""
+        head = self._table.report
+        return {} if head is None else {k.replace("_", " "): v for k, v in head.keywords().items()}
+
     def in_units(self, units: str) -> Case:
         """Return the case with its numbers in other units; texts with units stay what they are."""
         return Case({**self._typed, "units": units}, self.name, self.folder)

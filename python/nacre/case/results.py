@@ -10,7 +10,7 @@ from typing import Any
 
 import nacre
 from nacre._tools.groups import keyword_units
-from nacre.bearing import BearingSolution, Film, film_thickness
+from nacre.bearing import BearingSolution, Film, PairSolution, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
 from nacre.cards import numbers_of
 from nacre.case import Case, CaseError
@@ -156,7 +156,10 @@ def report_of(case: Case, results: Results, text: str, name: str, files: report.
         *cards,
         *report.input_rows(tables, units),
     ]
-    return report.text(name, [*results.values()], text, rows, sliding)
+    shown = dict(results)
+    if isinstance(shown.get("bearing"), PairSolution):
+        shown.pop("life", None)  # the pair has it among its own numbers
+    return report.text(name, [*shown.values()], text, rows, sliding, case.signed)
 
 
 def files_of(case: Case) -> list[Row]:

@@ -255,7 +255,8 @@ def sweep(
         if path.suffix.lower() == ".html":
             paths = ((row.label, row.text) for row in files_of(case_file))
             inputs = [("units of the case", case_file.units), *paths]
-            save_report(dataset, path, case=case.read_text(encoding="utf-8-sig"), inputs=inputs)
+            text = case.read_text(encoding="utf-8-sig")
+            save_report(dataset, path, case=text, inputs=inputs, head=case_file.signed)
             continue
         with replacing(path) as temporary:
             dataset.to_dataframe().to_csv(temporary)

@@ -283,8 +283,18 @@ class Sweep(Table):
     )
 
 
+class Head(Table):
+    """What the head of a report says of the case; ``--save FILE.html`` writes it."""
+
+    project: str | None = Field(None, description="Project.")
+    part: str | None = Field(None, description="Part, or its drawing.")
+    load_case: str | None = Field(None, description="Load case.")
+    drawn_by: str | None = Field(None, description="Who made the calculation.")
+    checked_by: str | None = Field(None, description="Who checked it.")
+
+
 class Keys(Table):
-    """Keys that all case files have: units, materials, and a study."""
+    """Keys that all case files have: units, materials, a study, and the head of a report."""
 
     solved: ClassVar[tuple[str, ...]] = ()
     """Tables that describe a solve, whose values a study can change."""
@@ -300,6 +310,7 @@ class Keys(Table):
         '"100Cr6", which stand in other places, too.',
     )
     sweep: Sweep | None = Field(None, description="A study of the case.")
+    report: Head | None = Field(None, description="Head of the report of the case.")
 
     @field_validator("units")
     @classmethod

@@ -32,7 +32,14 @@ from nacre.results.quantities import (
     quantities_of,
     quantity,
 )
-from nacre.results.report import Rows, Table, input_rows, notebook_picture, other_numbers, table
+from nacre.results.report import (
+    Rows,
+    Table,
+    input_rows,
+    notebook_picture,
+    other_numbers,
+    table,
+)
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 
@@ -371,7 +378,11 @@ class FrictionSolution(NormalContact, Shown, Result):
 
     def _inputs(self) -> Rows:
         friction = {"friction": self.friction, "direction": self.direction}
-        return [*self.normal._inputs(), *input_rows(friction)]
+        motion = "shift" if self.direction is None else "creepage"
+        # What is given has no error.
+        given = "force" if (self.report.discretisation or {}).get(motion) else motion
+        rows = [row for row in _friction_rows(self) if row.key == given]
+        return [*self.normal._inputs(), *input_rows(friction), *rows]
 
     def _report_rows(self) -> Rows:
         friction = [*_friction_rows(self), *self._remarks()]

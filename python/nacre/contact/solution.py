@@ -17,7 +17,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.groups import names_itself
 from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
-from nacre._tools.units import printable, written
+from nacre._tools.units import Scale, printable, rounded, written
 from nacre.contact import plausible
 from nacre.contact.gradient import (
     Direction,
@@ -860,7 +860,11 @@ def _beyond(solution: Solution, name: str, unit: str, limits: Sequence[float]) -
     """Return components; those below their limits are printed as 0."""
     values: tuple[float, float] = getattr(solution, name)
     components = [0.0 if abs(v) < limit else v for v, limit in zip(values, limits, strict=True)]
-    return display.along([None if math.isnan(v) else written(v, unit) for v in components])
+    scale = Scale.of(max((abs(v) for v in components if not math.isnan(v)), default=0.0), unit)
+    texts = [f"{rounded(scale.factor * v, 4)} {scale.unit}" for v in components]
+    return display.along(
+        [None if math.isnan(v) else t for v, t in zip(components, texts, strict=True)]
+    )
 
 
 def _tilt(solution: Solution) -> str:

@@ -23,7 +23,7 @@ from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
 from nacre.results.quantities import Quantity, frozen, quantity
-from nacre.results.report import Rows, Table, table
+from nacre.results.report import Rows, Table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.verdict import SLIGHT, UNCONVERGED, Demand, Verdict, asked, joined, judged, split
@@ -610,12 +610,11 @@ class StressSummary(Shown, Warned, Result):
         return Printed(head, rows, _notes(self))
 
     def _tables(self) -> Sequence[Table]:
-        heads = ["±" if row.name == "uncertainty" else row.name for row in EXTREMES]
-        cells = [
-            (*row[:3], display.share(row[3], row[2]) if row[3] == row[3] else "", *row[4:])
-            for row in self._extremes()
-        ]
-        return [table("Extremes", [heads, *cells], EXTREMES)]
+        head, *rows = _peak_rows(self)
+        for part in (*self.layers, *self.interfaces):
+            words = display.part_in_words(part, self.layers).removeprefix("of ")
+            rows = [[row[0].replace(display.part(part), words), *row[1:]] for row in rows]
+        return [Table("Extremes", head, rows)]
 
     def _model(self) -> Rows:
         return [remark("theory", STRESSES), remark("±", SIZE_ERRORS)]

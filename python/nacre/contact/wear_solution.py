@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import base64
 import dataclasses
 import math
@@ -16,7 +17,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.groups import Group, keyword, keyword_units
 from nacre._tools.typing import Field
-from nacre._tools.units import Scale, rounded, symbol, travelled, written
+from nacre._tools.units import Scale, rounded, travelled, written
 from nacre.contact.arguments import Motion
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
@@ -24,7 +25,7 @@ from nacre.results.base import Result, same
 from nacre.results.charts import HEADROOM, Axis, Chart, Curve, Picture, contact_charts
 from nacre.results.journal import Journal, Record
 from nacre.results.quantities import CELLS, Quantity, derived, frozen, quantity
-from nacre.results.report import Rows, Table, table
+from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
 from nacre.results.tables import heading
@@ -50,8 +51,10 @@ Thickness = Literal["frozen", "first order"]
 Unit = Literal["m", "cycles", "passes"]
 MODEL = (
     "wear by Archard's law, with a rate that is known; no third body, no running-in of the rate, "
-    "no change of friction, and layers {}: `thickness_error` says what that costs"
+    "no change of friction, and layers {}: the error of the layers says what that costs"
 )
+BODIES = ("shape", "body", "counterbody")
+"""Inputs that the first contact of a history has."""
 MOST_SECTIONS = 8
 """Sections of a chart of worn depths; of more states some are left out."""
 DISTANCE = Demand("distance", "", 0.0, 0.0, at_least=True, leads=True)
@@ -611,7 +614,16 @@ class WearHistory(Shown, Result):
         return {"verdict": self.verdict().words}
 
     def _inputs(self) -> Rows:
-        return [remark(name, self._input(name, text)) for name, text in self.inputs.items()]
+        contact = self.states[0].solution
+        rows = [r for r in contact._inputs() if r.key.split(".")[0] in (*BODIES, "grid")]
+        units = keyword_units(Motion, Rates, line=contact.grid.is_line)
+        for name, text in self.inputs.items():
+            value = _value(text)
+            if name == "sliding" and isinstance(value, float):
+                rows.append(remark("sliding", travelled(value, "m")))
+            elif name not in BODIES:
+                rows += input_rows({name: value}, units)
+        return rows
 
     def _charts(self) -> list[Picture]:
         """Return the charts over the distance, those of the last contact, and the worn depths."""
@@ -653,14 +665,6 @@ class WearHistory(Shown, Result):
         down = (1.0 + HEADROOM) * float(last.max()) or 1.0, 0.0
         axes = Axis("y" if grid.is_line else "x", "m"), Axis("depth removed", "m", down)
         return Chart("Depth removed, through the deepest in the end.", curves, axes)
-
-    def _input(self, name: str, text: str) -> str:
-        """Return an input in words with its unit."""
-        if name == "sliding":
-            return travelled(float(text), "m")
-        units = keyword_units(Motion, Rates, line=self.states[0].solution.grid.is_line)
-        unit = units[name] if name in ("rate", "counter_rate", "load", "approach") else ""
-        return f"{text} {symbol(unit)}".rstrip()
 
     def _rows(self) -> list[Row]:
         line = self.states[0].solution.grid.is_line
@@ -735,6 +739,17 @@ def _filled(value: Any, take: Callable[[Sequence[int]], Field]) -> Any:
             return take(value["shape"])
         return {key: _filled(item, take) for key, item in value.items()}
     return [_filled(item, take) for item in value] if isinstance(value, list) else value
+
+
+def _value(text: str) -> object:
+    """Return the value of an input of a history; its text if that is in words."""
+    try:
+        value = ast.literal_eval(text)
+    except (SyntaxError, ValueError):
+        return text
+    if not isinstance(value, dict):
+        return value
+    return {f"layer {k + 1}" if isinstance(k, int) else k: item for k, item in value.items()}
 
 
 def _fromto(numbers: Field, unit: str) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.groups import with_units
+from nacre._tools.groups import keyword_units, with_units
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre._tools.units import printable, written
@@ -26,7 +26,7 @@ from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
 from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
 from nacre.results.quantities import PROFILE, Quantity, frozen, quantity
-from nacre.results.report import Rows, Table, table
+from nacre.results.report import Rows, Table, input_rows
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.verdict import SLIGHT, Demand, Verdict, asked, factor_text, judged, split
@@ -413,7 +413,9 @@ class FatigueSummary(Shown, Warned, Result):
                 yield display.part(face), name, value, np.nan, np.nan, face.depth, np.nan
 
     def _inputs(self) -> Rows:
-        return [remark(name, str(self._comments()[name])) for name in ("rule", "criteria")]
+        inputs: dict[str, object] = {"rule": self.rule.replace("_", " ")}
+        inputs |= {f"criterion[{k}]": criterion for k, criterion in enumerate(self.criteria)}
+        return input_rows(inputs, keyword_units(Criterion))
 
     def _report_rows(self) -> Rows:
         return [display.numbered("peak_pressure", "peak pressure", self.peak_pressure, "Pa")]
@@ -432,7 +434,8 @@ class FatigueSummary(Shown, Warned, Result):
         return [Chart(caption, curves, axes, marks, (0.0, enlarged) if enlarged else None)]
 
     def _tables(self) -> Sequence[Table]:
-        return [table("What layers and interfaces need", self._file_rows(), FATIGUE)]
+        printed = self._table()
+        return [Table("What layers and interfaces need", printed.head, printed.rows)]
 
     def _model(self) -> Rows:
         return [remark("theory", note) for note in self._table().notes]

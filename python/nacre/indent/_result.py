@@ -28,7 +28,7 @@ from nacre.results.base import Result
 from nacre.results.charts import Axis, Chart
 from nacre.results.charts import Curve as Line
 from nacre.results.quantities import frozen, quantity
-from nacre.results.report import Rows, Table, input_rows, table
+from nacre.results.report import Rows, Table, input_rows, label_of, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.values import decode, encode, refusing
@@ -222,6 +222,10 @@ class Fit(Shown, Result):
         """SI units of the estimates."""
         return [unit_of(name) for name in self.estimates]
 
+    def _title(self) -> str:
+        names = ", ".join(curve.name for curve in self.curves if curve.name)
+        return f"{self._TITLE}: {names}" if names else self._TITLE
+
     def _inputs(self) -> Rows:
         inputs = {name: getattr(self, name) for name in ("body", "tip", "counterbody", "adhesion")}
         inputs["counterbody"] = self.counterbody or "rigid"
@@ -238,7 +242,7 @@ class Fit(Shown, Result):
         for name, value, error, interval, whole, verdict in self._table().rows:
             text = f"{value} ± {whole or error}; noise ± {error}, 95 %: {interval} {verdict}"
             text, estimate, deviation = text.rstrip(), self.estimates[name], errors[name]
-            rows.append(Row(name, name, text, estimate, unit_of(name), deviation))
+            rows.append(Row(name, label_of(name), text, estimate, unit_of(name), deviation))
         return rows
 
     def _tables(self) -> Sequence[Table]:
@@ -259,9 +263,9 @@ class Fit(Shown, Result):
         forces, residuals = [], []
         for number, curve in enumerate(self.curves):
             name, order = curve.name or f"curve {number}", np.argsort(curve.depth, kind="stable")
-            forces.append(Line(curve.depth, curve.force, name, "points"))
             model = self.loads[number][order]
             forces.append(Line(curve.depth[order], model, f"model of {name}"))
+            forces.append(Line(curve.depth, curve.force, name, "points"))  # on top of the line
             residuals.append(Line(curve.depth, self.residuals[number], name, "points"))
         rest = Axis("residual", "N") if self.noise == "absolute" else Axis("residual, share")
         depth = Axis("depth", "m")

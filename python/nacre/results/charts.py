@@ -22,6 +22,8 @@ THIN, ENLARGED = 0.1, 3.0
 NEAREST = 1.5
 """Distance in cells from the outermost of a contact within which its edge is."""
 NO_EDGE: Array = np.empty((0, 2))
+LINE = 0.01
+"""Width of a line over the height of a picture: curves that are nearer look alike."""
 HEADROOM = 0.05
 """Share of the range that stays free beyond curves, where they do not end at 0."""
 
@@ -166,8 +168,20 @@ def contact_charts(result: Peaked) -> list[Picture]:
     ]
     if result.grid.is_line:
         return [*sections]
+    (along_x,), (along_y,) = (chart.curves for chart in sections)
+    if _are_alike(along_x, along_y):
+        caption = sections[0].caption.removesuffix(".")
+        sections = [sections[0]._replace(caption=f"{caption}; along y it is the same.")]
     caption = "Pressure over the contact, x and y each to its scale; white: no contact."
     return [*sections, contact_map(result, result.pressure, pressure, caption)]
+
+
+def _are_alike(first: Curve, second: Curve) -> bool:
+    """Return whether two curves are on top of each other in a picture."""
+    return all(
+        one.shape == other.shape and np.allclose(one, other, 0.0, LINE * np.ptp(one))
+        for one, other in ((first.x, second.x), (first.y, second.y))
+    )
 
 
 def contact_map(result: Peaked, values: Array, axis: Axis, caption: str) -> Map:

@@ -8,9 +8,13 @@ import functools
 import html
 import io
 import math
+import re
+import shutil
+import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from itertools import dropwhile
 from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
@@ -18,7 +22,17 @@ import numpy.typing as npt
 
 from nacre._core import Elastic, Free, HalfSpace, Response, Rigid, Spring
 from nacre._tools.typing import Planned
-from nacre._tools.units import SI, Scale, Within, display_units, printable, rounded, written
+from nacre._tools.units import (
+    SI,
+    Scale,
+    System,
+    Within,
+    display_units,
+    printable,
+    rounded,
+    system,
+    written,
+)
 from nacre.results.quantities import Quantity
 from nacre.results.rows import Row, remark
 
@@ -40,6 +54,10 @@ SLIGHT = 1e-8
 ORDINALS = ("first", "second", "third", "fourth", "fifth")
 LAYER_ROWS = 4
 """Largest number of layers that get a row each."""
+GLUE = "\N{NO-BREAK SPACE}"
+NARROWEST = 20
+"""Least letters of a line that is wrapped beside its label."""
+_width: ContextVar[int | None] = ContextVar("width of printed lines", default=None)
 _units: ContextVar[str | None] = ContextVar(
     "units in which numbers in SI are printed", default=None
 )
@@ -105,6 +123,39 @@ def shown_in(units: str) -> Iterator[None]:
         yield
     finally:
         _units.reset(token)
+
+
+def shown_system() -> System:
+    """Return the units in which numbers are shown."""
+    return system() if (units := _units.get()) is None else System(units)
+
+
+@contextmanager
+def wrapped() -> Iterator[None]:
+    """Print lines and tables no wider than the terminal within the context; 80 if unknown."""
+    token = _width.set(shutil.get_terminal_size((80, 24)).columns)
+    try:
+        yield
+    finally:
+        _width.reset(token)
+
+
+def wrap(line: str, indent: int = 2) -> list[str]:
+    """Return a line in lines no wider than the terminal within `wrapped`, the next ones indented.
+
+    They keep some `NARROWEST` letters for words, and words and numbers keep theirs.
+    """
+    width = _width.get()
+    if width is None or len(line) <= width:
+        return [line]
+    lines = textwrap.TextWrapper(
+        max(width, indent + NARROWEST),
+        subsequent_indent=" " * indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    # A number stays beside the next digits or its unit.
+    return [part.replace(GLUE, " ") for part in lines.wrap(re.sub(r"(?<=\d) (?=\S)", GLUE, line))]
 
 
 def number(value: float, unit: str, digits: int = 4) -> str:
@@ -193,8 +244,11 @@ def without_rounding(values: Sequence[float]) -> list[float]:
 
 
 def pair(values: Iterable[float], unit: str) -> str:
-    """Return components with their units."""
-    return f"({', '.join(number(value, unit) for value in values)})"
+    """Return components with their unit, one of all."""
+    numbers = [*values]
+    scale = scale_of(max((abs(v) for v in numbers if math.isfinite(v)), default=0.0), unit)
+    texts = (f"{rounded(scale.factor * v, 4)} {scale.unit}".rstrip() for v in numbers)
+    return f"({', '.join(texts)})"
 
 
 def fields(instance: Any, units: Mapping[str, str]) -> list[Row]:
@@ -227,8 +281,15 @@ def _field(value: object, unit: str) -> str:
 def text(rows: Sequence[Row], warnings: Sequence[str]) -> str:
     """Return the table that ``print`` shows: names and values, and warnings below."""
     width = max(len(row.label) for row in rows)
-    lines = [f"{row.label:{width}}  {row.text}" if row.label else row.text for row in rows]
-    return printable("\n".join([*lines, *(f"warning: {warning}" for warning in warnings)]))
+    lines = [
+        line
+        for row in rows
+        for line in (
+            wrap(f"{row.label:{width}}  {row.text}", width + 2) if row.label else wrap(row.text)
+        )
+    ]
+    notes = [line for warning in warnings for line in wrap(f"warning: {warning}")]
+    return printable("\n".join([*lines, *notes]))
 
 
 def part(place: InLayer | AtInterface) -> str:
@@ -296,12 +357,41 @@ def _cells(tag: str, row: Sequence[str]) -> str:
 
 
 def aligned(rows: Sequence[Sequence[str]], side: str = ">") -> list[str]:
-    """Return the lines of a table whose columns are as wide as their widest cells."""
+    """Return the lines of a table whose columns are as wide as their widest cells.
+
+    Within `wrapped` the headings of a wider table are broken, and it is continued below, by its
+    first column, if it is wider yet.
+    """
+    most = _width.get()
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(f"{cell:{side}{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
+    if most is not None and sum(widths) + 2 * (len(widths) - 1) > most:
+        rows = _with_broken_heads(rows)
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    blocks: list[list[int]] = [[0]]
+    for k in range(1, len(widths)):
+        taken = sum(widths[place] + 2 for place in blocks[-1])
+        if most is not None and len(blocks[-1]) > 1 and taken + widths[k] > most:
+            blocks.append([0])
+        blocks[-1].append(k)
+    parts = [
+        ["  ".join(f"{row[k]:{side}{widths[k]}}" for k in block).rstrip() for row in rows]
+        for block in blocks
     ]
+    filled = (dropwhile(lambda line: not line, part) for part in parts)  # heads of fewer lines
+    return [line for number, part in enumerate(filled) for line in ([""] * (number > 0) + [*part])]
+
+
+def _with_broken_heads(rows: Sequence[Sequence[str]]) -> list[Sequence[str]]:
+    """Return the rows of a table whose headings, the first row, are no wider than their cells."""
+    head, *cells = rows
+    narrowest = [max(map(len, column)) for column in zip(*cells, strict=True)] or [1] * len(head)
+    lines = [
+        textwrap.wrap(name, max(least, *map(len, name.split()), 1)) if name else []
+        for name, least in zip(head, narrowest, strict=True)
+    ]
+    most = max(map(len, lines))
+    padded = [[""] * (most - len(words)) + words for words in lines]
+    return [*zip(*padded, strict=True), *cells]
 
 
 def loaded_parts(pressure: npt.NDArray[np.float64]) -> list[tuple[int, int]]:

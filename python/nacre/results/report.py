@@ -37,10 +37,12 @@ MOST_ROWS = 300
 """Largest number of rows of a table that stand in a page."""
 MOST_LISTED = 12
 """Largest number of numbers in an input that are written out."""
-DIGITS, EXACT = 4, 9
-"""Digits of numbers in tables, and of inputs."""
+DIGITS, EXACT, ANGLE = 4, 9, 6
+"""Digits of numbers in tables, of inputs, and of angles, whose factor to radians is not exact."""
 ROUNDING = 1e-12
-"""Part of the size of a grid below which its centre is 0, as of one that was chosen."""
+"""Share below which a number is 0: of the size of a grid its centre, of a load its balance."""
+FEMTOMETRE = 1e-15
+"""Length [m], moment [N m] and share below which a number is rounding."""
 MOST_COLUMNS = 11
 """Largest number of columns on a page; a wider table is continued below, by its first column."""
 INFINITE = {"inf": "∞", "-inf": "−∞"}
@@ -49,6 +51,22 @@ UNIT = re.compile(r"(.*) \[(.+)\]")
 """A heading with a unit."""
 AXIS = re.compile(r"\b[xyz](?= \[|$)")
 """The axis in the heading of a component."""
+LEADING = ("Given", "Results", "Pictures")
+"""Chapters before the tables of parts, which are as wide as the page."""
+SIGNED = ("project", "part", "load case", "drawn by", "checked by")
+"""What a head says beside the name of the case."""
+WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio", "rms_slope": "RMS slope"}
+"""Names of quantities whose keys are no words."""
+ANGLES = {"rad": (math.degrees(1.0), "°"), "rad/s": (30 / math.pi, "/min")}
+"""Units in which a page has angles and speeds, and how many there are in an SI unit."""
+MINUTES = 60 * math.degrees(1.0)
+"""Minutes of arc in a radian."""
+ACCURACIES = ("residual", "balance", "ended", "friction_ended")
+"""Keys of rows that say how well a solution holds."""
+PATH = re.compile(r"\b[a-z_]\w*(?:\[\d+\])?(?:\.[a-z_]\w*(?:\[\d+\])?)*", re.IGNORECASE)
+"""A path of an input, or a word."""
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
+"""A number in a text."""
 GRIDS = {"Grid", "Grid.line"}
 BODIES = {"HalfSpace", "Elastic", "Layer", "Spring", "Response", *GRIDS}
 """Classes that need no row of their own among the inputs."""
@@ -99,10 +117,15 @@ class Reported(Protocol):
 
 
 def write(
-    path: Path, results: Sequence[Reported], case: str | None = None, inputs: Rows = ()
+    path: Path,
+    results: Sequence[Reported],
+    case: str | None = None,
+    inputs: Rows = (),
+    signed: Mapping[str, str] | None = None,
 ) -> None:
     """Write the report of results of one case, whose file is `case`; its name is that of `path`."""
-    path.write_text(text(name_of(path), results, case, inputs), encoding="utf-8")
+    written = text(name_of(path), results, case, inputs, signed=signed)
+    path.write_text(written, encoding="utf-8")
 
 
 def text(
@@ -111,10 +134,12 @@ def text(
     case: str | None = None,
     inputs: Rows = (),
     stress: Mapping[str, object] | None = None,
+    signed: Mapping[str, str] | None = None,
 ) -> str:
     """Return the report of results of one case, whose file is `case`.
 
-    The first result takes keywords of stresses for its picture over depth.
+    The first result takes keywords of stresses for its picture over depth. `signed` has texts of
+    the head, by the names in `SIGNED`.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", core.NacreWarning)
@@ -125,7 +150,7 @@ def text(
         ]
     notes = [Sections("", inputs, warnings=[str(warning.message) for warning in caught])]
     today = datetime.date.today().isoformat()
-    return page(name, today, [*sections, *notes], judgements, case)
+    return page(name, today, [*sections, *notes], judgements, case, signed)
 
 
 def writer(result: Reported) -> dict[str, Callable[[Path], None]]:
@@ -152,6 +177,7 @@ def page(
     sections: Sequence[Sections],
     judgements: Sequence[Verdict],
     case: str | None = None,
+    signed: Mapping[str, str] | None = None,
 ) -> str:
     """Return the page of a report."""
     several = sum(bool(section.title) for section in sections) > 1
@@ -171,24 +197,69 @@ def page(
         "Pictures": each("pictures", _figures),
         "Parts": each("tables", lambda members: [_table(member) for member in members]),
         "Model and limits": each("model", _pairs),
-        "Warnings": [markup("note", text=text) for text in texts or ["no warnings"]],
+        "Warnings": [markup("note", text=in_words(text)) for text in texts or ["no warnings"]],
         "Case file": case and markup("case", text=case),
     }
-    head = [remark("case", name), remark("date", date), remark("computed by", tables.SOURCE)]
+    head = {"case": name, "date": date, "computed by": tables.SOURCE, **(signed or {})}
+    (*drawn_and_checked,) = (head.pop(key, "") for key in SIGNED[3:])
+    first, parts, last = (
+        [
+            markup("chapter", title=title, content=content)
+            for title, content in chapters.items()
+            if content and (title in LEADING, title == "Parts") == place
+        ]
+        for place in ((True, False), (False, True), (False, False))
+    )
     return markup(
         "page",
         style=Markup(svg.STYLE),
         title=sections[0].title[:1].upper() + sections[0].title[1:],
         name=name,
         source=tables.SOURCE,
+        running="".join(c if c.isalnum() and c.isascii() else f"\\{ord(c):x} " for c in name),
         verdicts=[_verdict(verdict) for verdict in judgements],
-        head=_pairs(head),
-        chapters=[
-            markup("chapter", title=title, content=content)
-            for title, content in chapters.items()
-            if content
-        ],
+        head=_pairs([remark(*pair) for pair in head.items()]),
+        drawn=drawn_and_checked[0],
+        checked=drawn_and_checked[1],
+        chapters=[markup("columns", content=first), *parts, markup("columns", content=last)],
     )
+
+
+def label_of(path: str) -> str:
+    """Return the path of an input in words.
+
+    >>> label_of("body.layers[0].material.young"), label_of("crown_radius")
+    ("body, layer 1, Young's modulus", 'crown radius')
+    """
+    words = []
+    for key in path.split("."):
+        name, number = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", key).groups()  # type: ignore[union-attr]
+        if number is not None:
+            name = f"{name.removesuffix('s')} {int(number) + 1}"
+        words += [] if name == "material" else [WORDS.get(name, name).replace("_", " ")]
+    return ", ".join(words)
+
+
+def in_words(text: str) -> str:
+    """Return a text in which paths of inputs are words.
+
+    >>> in_words("the extremes in interfaces[0] are uncertain; take surface.npy")
+    'the extremes in interface 1 are uncertain; take surface.npy'
+    """
+
+    def words(path: re.Match[str]) -> str:
+        is_input = "." in path[0] and path[0].rpartition(".")[2] in VALUES
+        return label_of(path[0]) if "[" in path[0] or is_input else path[0]
+
+    return PATH.sub(words, text)
+
+
+def _kind(name: str) -> str:
+    """Return the name of a class in words, as "angular contact ball" or "JKR"."""
+    word = name.rpartition(".")[2]
+    if len(word) <= 3:
+        return word.upper()
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower()
 
 
 def input_rows(values: Mapping[str, object], units: Mapping[str, str] | None = None) -> Rows:
@@ -202,11 +273,12 @@ def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[Row]
     """Yield the rows of an encoded value."""
     if isinstance(value, Mapping) and value.keys() == {"array"}:
         shape, digest = value["array"]
-        yield remark(path, f"{' × '.join(map(str, shape))} numbers, SHA-256 {digest}")
+        words = f"{' × '.join(map(str, shape))} numbers, SHA-256 {digest}"
+        yield Row(path, label_of(path), words)
     elif isinstance(value, Mapping):
         is_call = len(value) == 1 and (kind := next(iter(value)))[:1].isupper()
         if is_call and kind not in BODIES:
-            yield remark(path, kind)
+            yield Row(path, label_of(path), _kind(kind))
         arguments = value[kind] if is_call else value
         if is_call and kind in GRIDS:
             arguments = {**arguments, "center": _without_rounding(arguments)}
@@ -219,7 +291,7 @@ def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[Row]
         # Limits of layers have the unit of the name before.
         names = re.sub(r"\[\d+\]", "", path).split(".")[:-3:-1]
         unit = next((units[name] for name in names if name in units), "")
-        yield Row(path, path, _leaf(value, unit), value, unit)
+        yield Row(path, label_of(path), _leaf(value, unit), value, unit)
 
 
 def _without_rounding(grid: Mapping[str, Any]) -> object:
@@ -236,15 +308,19 @@ def _leaf(value: object, unit: str) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float | int):
+        if unit in ANGLES:
+            factor, unit = ANGLES[unit]
+            return rounded(factor * value, ANGLE) + unit
         return display.number(value, unit, EXACT)
     return str(value)
 
 
 def other_numbers(result: tables.HasQuantities) -> list[Row]:
-    """Return the quantities of a result that its printed table leaves out."""
+    """Return the quantities of a result that its printed table leaves out, if they are not 0."""
     rows = []
     for row, value in tables.numbers(result):
-        if not row.label and "." not in row.path and np.isfinite(value).all():
+        is_known = np.isfinite(value).all() and np.any(value)
+        if not row.label and "." not in row.path and is_known:
             number, unit = display.pair if row.dims else display.number, result._si(row)
             rows.append(Row(row.name, row.words, number(value, unit), value, unit))
     return rows
@@ -284,7 +360,13 @@ def _column(
     """Return the heading and the cells of a column, in one unit; below `rounding` they are 0."""
     if match := UNIT.fullmatch(name):
         name, unit = match.groups()
+    if unit in ANGLES:
+        factor, unit = ANGLES[unit]
+        values = [factor * value if _is_number(value) else value for value in values]
+        rounding *= factor
     largest = max(map(abs, filter(_is_number, values)), default=0.0)
+    if not unit or unit.endswith("m"):
+        rounding = max(rounding, FEMTOMETRE)
     scale = display.scale_in(largest if largest > rounding else 0.0, unit)
 
     def cell(value: object) -> str:
@@ -312,9 +394,26 @@ def _heading(title: str) -> Markup | None:
 
 def _pairs(rows: Rows) -> Markup:
     """Return a table of names and texts, in which a zero has no exponent."""
-    texts = ((row.label, row.text.replace("0e+00", "0")) for row in rows)
+    texts = ((row.label, in_words(_readable(row)).replace("0e+00", "0")) for row in rows)
     pairs = [markup("pair", name=label, text=text) for label, text in texts]
     return markup("pairs", rows=pairs)
+
+
+def _readable(row: Row) -> str:
+    """Return the text of a row: angles in minutes of arc or degrees, speeds per minute.
+
+    Accuracies that are rounding are 0.
+    """
+    if row.key.rpartition(".")[2] == "tilt" and row.value is not None:
+        bare = row.text.removesuffix(" mrad")
+        factor = MINUTES * (1.0 if bare == row.text else 1e-3)
+        words = NUMBER.sub(lambda slope: rounded(factor * float(slope[0]), DIGITS), bare)
+        return f"{words} minutes of arc"
+    if row.key in ACCURACIES:
+        return NUMBER.sub(lambda n: "0" if abs(float(n[0])) < ROUNDING else n[0], row.text)
+    if row.unit in ANGLES and isinstance(row.value, float):
+        return _leaf(row.value, row.unit)
+    return row.text
 
 
 def _figures(pictures: Iterable[Drawing]) -> Markup:
@@ -334,14 +433,14 @@ def _table(members: Table) -> Markup:
             [line[0], *line[first : first + step]] for line in (members.head, *members.rows)
         )
         blocks.append(
-            markup("table", rows=[_row("head", head), *(_row("cell", row) for row in rows)])
+            markup("table", head=_row("head", head), rows=[_row("cell", row) for row in rows])
         )
-    notes = [markup("note", text=note) for note in members.notes]
+    notes = [markup("note", text=in_words(note)) for note in members.notes]
     return markup("part", title=_heading(members.title), content=[*blocks, *notes])
 
 
 def _row(kind: str, cells: Iterable[str]) -> Markup:
-    return markup("row", cells=[markup(kind, text=text) for text in cells])
+    return markup("row", cells=[markup(kind, text=in_words(text)) for text in cells])
 
 
 def _verdict(verdict: Verdict) -> Markup:

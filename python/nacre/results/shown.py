@@ -136,13 +136,15 @@ class Shown(Fields):
         """Return the verdict, if there is one, the numbers, and the table."""
         with self._units():
             rows, table = [*self._rows(), *self._remarks()], self._table()
-            sentences = self._sentences()
+            sentences = [line for text in self._sentences() for line in display.wrap(text)]
             lines = [*sentences, ""] if sentences else []
-            warnings = [f"warning: {text}" for text in self._warnings]
+            notes = (f"warning: {text}" for text in self._warnings)
+            warnings = [line for note in notes for line in display.wrap(note)]
         if rows:
             lines += [display.text(rows, ()), *warnings, *([""] if table else [])]
         if table:
-            lines += [*display.aligned([table.head, *table.rows], table.side), *table.notes]
+            lines += display.aligned([table.head, *table.rows], table.side)
+            lines += [line for note in table.notes for line in display.wrap(note)]
         return printable("\n".join(lines if rows else [*lines, *warnings]))
 
     def _repr_html_(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ from nacre.results import display, files
 from nacre.results.charts import Axis, Chart, Curve, Picture
 from nacre.results.parameters import VALUES
 from nacre.results.quantities import ERROR
-from nacre.results.report import Rows, Table, table, write
+from nacre.results.report import Rows, Table, label_of, table, write
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
 
@@ -40,7 +40,7 @@ class Study(Shown):
 
     def _inputs(self) -> Rows:
         names = (str(name) for name in self.dataset.coords if name != "axis")
-        return [remark(name, self._values(name)) for name in names]
+        return [Row(name, label_of(name), self._values(name)) for name in names]
 
     @property
     def _outputs(self) -> list[str]:
@@ -52,7 +52,7 @@ class Study(Shown):
         dataset = self.dataset
         failed = int((dataset["error"] != "").sum()) if "error" in dataset else 0
         cases = int(np.prod([dataset.sizes[dim] for dim in self._dims]))
-        ranges = [Row(name, name, self._range(name)) for name in self._outputs]
+        ranges = [Row(name, label_of(name), self._range(name)) for name in self._outputs]
         return [remark("cases", f"{cases}, {failed} failed"), *ranges]
 
     def _charts(self) -> Sequence[Picture]:
@@ -75,7 +75,8 @@ class Study(Shown):
         return "" if unit == "1" else unit
 
     def _head(self, name: str) -> str:
-        return f"{name} [{unit}]" if (unit := self._unit(name)) else name
+        words = label_of(name)
+        return f"{words} [{unit}]" if (unit := self._unit(name)) else words
 
     def _number(self, name: str, value: object) -> str:
         """Return a value of a variable, with its unit."""
@@ -109,14 +110,14 @@ class Study(Shown):
             columns[self._head(name)] = frame[name].tolist()
             if name + ERROR in frame:
                 pairs = zip(frame[name + ERROR], frame[name], strict=True)
-                columns[f"± of {name}"] = [
+                columns[f"± of {label_of(name)}"] = [
                     display.share(e, v) if np.isfinite(e) and np.isfinite(v) else ""
                     for e, v in pairs
                 ]
         tables = [table("Cases", [[*columns], *zip(*columns.values(), strict=True)])]
         if "error" in frame and (wrong := frame[frame["error"] != ""]).size:
             cells = [[*map(str, row)] for row in wrong[[*places, "error"]].values.tolist()]
-            tables.append(Table("Cases that failed", [*places, "error"], cells))
+            tables.append(Table("Cases that failed", [*map(label_of, places), "error"], cells))
         return tables
 
     def _charts_of(self, name: str) -> list[Chart]:
@@ -138,17 +139,24 @@ class Study(Shown):
         curves = []
         for k in range(min(flat.sizes["others"], MOST_CURVES)):
             line = flat.isel(others=k)
-            places = ", ".join(f"{dim} {self._number(str(dim), line[dim].item())}" for dim in dims)
+            places = ", ".join(
+                f"{label_of(str(dim))} {self._number(str(dim), line[dim].item())}" for dim in dims
+            )
             curves.append(Curve(output[x].values, line.values, places))
+            if name + ERROR in self.dataset:  # ± as thin lines
+                error = self.dataset[name + ERROR].transpose(*output.dims)
+                error = error.stack(others=dims) if dims else error.expand_dims("others")
+                bounds = (line + sign * error.isel(others=k).values for sign in (-1.0, 1.0))
+                curves += [Curve(output[x].values, bound.values, "", "thin") for bound in bounds]
         low, high = float(output.min()), float(output.max())
         margin = (high - low) / 10
         # Of values that hardly change, 0 is not shown.
         ends = (low - margin, high + margin) if 0 < margin < low / 20 else None
         axes = (self._axis(x), self._axis(name)._replace(ends=ends))
-        return [Chart(f"{name} over {x}.".replace("_", " "), curves, axes)]
+        return [Chart(f"{label_of(name)} over {label_of(x)}.", curves, axes)]
 
     def _axis(self, name: str) -> Axis:
-        return Axis(name.replace("_", " "), self._unit(name), is_exact=True)
+        return Axis(label_of(name), self._unit(name), is_exact=True)
 
     @property
     def _warnings(self) -> Sequence[str]:
@@ -164,6 +172,7 @@ def save_report(
     *,
     case: str | None = None,
     inputs: Sequence[tuple[str, str]] = (),
+    head: Mapping[str, str] | None = None,
 ) -> Path:
     """Write the report of a study, whole or not at all: a page of HTML to print and to sign.
 
@@ -177,6 +186,8 @@ def save_report(
         Text of the case file, which the page holds in full.
     inputs : sequence of tuple, optional
         Further inputs: names and texts.
+    head : mapping of str to str, optional
+        Texts of the head: project, part, load case, drawn by, checked by.
 
     Returns
     -------
@@ -201,4 +212,6 @@ def save_report(
     """
     with display_units(str(dataset.attrs.get("unit_system", "SI"))):
         rows = [remark(name, text) for name, text in inputs]
-        return files.save(path, {".html": lambda file: write(file, [Study(dataset)], case, rows)})
+        return files.save(
+            path, {".html": lambda file: write(file, [Study(dataset)], case, rows, head)}
+        )

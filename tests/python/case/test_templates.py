@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import nacre
@@ -121,7 +122,7 @@ def test_the_rough_surface_touches_at_a_share_of_its_area(tmp_path: Path, capsys
     # Persson's and Hyun's law: κ p/(E* h′) of the area, κ about 2 (doi:10.1103/PhysRevE.70.026117).
     numbers = solved("rough", tmp_path, capsys)
     share = numbers["contact_area"] / 0.01
-    assert 1.5 < share * STEEL.plane_strain_modulus / 1e6 * 0.1 / 500 < 2.6
+    assert 1.5 < share * STEEL.plane_strain_modulus / 1e6 * 0.01 / 100 < 2.6
 
 
 def test_slides_and_rolls_carry_forces_within_friction(tmp_path: Path, capsys: Capture) -> None:
@@ -142,6 +143,29 @@ def test_the_coat_is_through_where_the_law_says(tmp_path: Path, capsys: Capture)
     radius, thickness = 10, 2e-3
     rigid = 2 / 3 * (2 * radius * thickness) ** 1.5 / (radius * 1e-11 * 100)
     assert rigid < numbers["life"] < 2 * rigid
+
+
+def test_the_rough_surface_is_a_contact_below_its_hardness(tmp_path: Path, capsys: Capture) -> None:
+    numbers = solved("rough", tmp_path, capsys)
+    assert numbers["peak_pressure"] < numbers["hardness"]
+
+
+@pytest.mark.parametrize("kind", [kind for kind in templates.KINDS if kind != "sweep"])
+def test_every_template_has_a_verdict_that_judges(
+    kind: str, tmp_path: Path, capsys: Capture
+) -> None:
+    verdicts = solved(kind, tmp_path, capsys)["verdict"].values()
+    assert verdicts
+    assert {verdict["level"] for verdict in verdicts} <= {"good", "fair", "bad"}
+
+
+@pytest.mark.parametrize("kind", ["indentation", "cone"])
+def test_pictures_of_indentation_are_curves(kind: str, tmp_path: Path, capsys: Capture) -> None:
+    """A step turns the tangent by 15 degrees at most, in a picture as wide as high."""
+    numbers = solved(kind, tmp_path, capsys)
+    depth, load = (np.array(numbers[name]) / numbers[name][-1] for name in ("approach", "load"))
+    turns = np.diff(np.degrees(np.arctan2(np.diff(load), np.diff(depth))))
+    assert abs(turns).max() < 15
 
 
 def test_the_sweep_has_all_its_cases(tmp_path: Path, capsys: Capture) -> None:

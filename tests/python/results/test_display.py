@@ -17,6 +17,7 @@ import nacre
 from nacre import design
 from nacre._tools.units import Scale, rounded, size_of, written
 from nacre.bearing import DeepGrooveBall
+from nacre.results import display
 
 STEEL, DLC = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.2)
 COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-6)])
@@ -32,7 +33,7 @@ def test_the_table_names_bodies_modulus_motion_and_resultant() -> None:
     solution = nacre.solve(shape, COATED, STEEL, load=10.0, eccentricity=(1e-6, None))
     rows = table(solution)
     assert rows["load"] == "10 N"
-    assert rows["acts at"] == "(1 µm, 0 m)"
+    assert rows["acts at"] == "(1 µm, 0 µm)"
     assert rows["motion"] == "load; tilt x free, y locked"
     assert rows["body"] == "E 210 GPa, ν 0.3"
     assert rows["layers[0]"] == "2 µm, E 420 GPa, ν 0.2"
@@ -338,3 +339,44 @@ def test_a_history_prints_0_where_a_force_is_rounding() -> None:
     assert [cell.strip() for cell in first if cell][1:5] == ["0 N", "0 N", "0 m", "0 m"]
     assert [cell.strip() for cell in pulled if cell][1:3] == ["2 N", "0 N"]
     assert [cell.strip() for cell in back if cell][1:3] == ["0 N", "0 N"]
+
+
+LONG = ["element", "load inner [N]", "a heading of many words [MPa]", "x"]
+
+
+@pytest.mark.parametrize("columns", [40, 60, 80, 137])
+def test_lines_and_tables_are_no_wider_than_the_terminal(
+    columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    text = "Lives 14 200 h ± 0.16 %, L10r 1280 million revolutions; " * 4 + "10 000 h required"
+    cells = [[str(j), *(f"{j * 1e3:.0f} ± 1 %" for _ in range(9))] for j in range(3)]
+    heads = [LONG[0], *(f"{LONG[1 + k % 3]} {k}" for k in range(9))]
+    with display.wrapped():
+        lines, rows = display.wrap(text), display.aligned([heads, *cells])
+    assert max(map(len, [*lines, *rows])) <= columns
+    assert " ".join(" ".join(lines).split()) == text  # nothing is lost
+    assert not [line for line in lines if re.match(r" *(000|200) h", line)]
+    words = " ".join(rows).split()
+    assert [words.count(f"{j * 1000}") for j in (1, 2)] == [9, 9]
+    blocks = "\n".join(rows).split("\n\n")
+    assert all(block.splitlines()[-1].split()[0] == "2" for block in blocks)
+
+
+def test_tables_that_fit_and_prints_of_python_are_not_wrapped(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("COLUMNS", "60")
+    rows = [LONG, ["0", "10", "20", "30"]]
+    with display.wrapped():
+        assert len(display.aligned(rows)) == 2
+    assert len(display.aligned([[*LONG, *LONG], ["1"] * 8])) == 2
+    assert display.wrap("a word " * 30) == ["a word " * 30]
+
+
+@pytest.mark.parametrize("values", [(0.0, 2e-6), (1e-4, 2e-7), (0.0, 0.0)])
+def test_components_have_one_unit_and_zeros_that_of_the_case(values: tuple[float, float]) -> None:
+    with display.shown_in("N-mm-MPa"):
+        first, second = display.pair(values, "m").strip("()").split(", ")
+    assert first.split()[1] == second.split()[1]
+    assert first.split()[1] in ("mm", "µm")
