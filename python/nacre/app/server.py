@@ -20,6 +20,7 @@ import nacre
 from nacre.app.answer import STAGES, Answer, Going, Stopped, answer
 from nacre.app.cards import Card
 from nacre.app.fields import FieldError
+from nacre.app.line import filled, with_note
 from nacre.app.page import files
 from nacre.case import CaseError
 
@@ -36,7 +37,7 @@ SECONDS = 30.0
 """Longest time of an answer, and of a connection without a question."""
 QUESTION = {"card": str, "values": dict, "stage": str, "page": str, "age": int}
 """Parts of a question, and their types."""
-STAGES_AT = {"/answer": (*STAGES, "case"), "/report": ("report",)}
+STAGES_AT = {"/answer": (*STAGES, "case", "line"), "/report": ("report",)}
 """Stages that may be asked for, by path."""
 HEADERS = {
     "Content-Security-Policy": (
@@ -119,10 +120,14 @@ class Server(ThreadingHTTPServer):
         """Return the answer to a question."""
         card, stage = self.cards[question["card"]], question["stage"]
         going = self.going(question["page"][:60], question["age"])
+        values = dict(question["values"])
+        text = str(values.pop("line", ""))
         try:
-            case = card.case(question["values"])
+            if stage == "line":
+                return filled(text, self.cards, card.name)._asdict()
+            case, measured = card.case(values), with_note(text, values, card)
             with self.lane(stage == "draft", going):
-                return answer(case, stage, going, card.measured)
+                return answer(case, stage, going, measured)
         except FieldError as error:
             return {"error": str(error), "field": error.path}
         except (LookupError, ValueError) as error:

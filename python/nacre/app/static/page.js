@@ -145,6 +145,16 @@ function release(input) {
   choose(select);
 }
 
+// A line of text fills the fields of the card that its designation names.
+async function fill({ value }) {
+  const { card, values, asked, error } = await post("answer", "line");
+  if (!values) return tell(problem, error);
+  form = document.forms.namedItem(card);
+  for (const [path, text] of Object.entries({ ...values, line: value })) one(`[name="${path}"]`, form).value = text;
+  open(form);
+  tell(note, asked.join(". "));
+}
+
 function open(card) {
   form = card;
   forms.forEach((other) => (other.hidden = other !== form));
@@ -182,12 +192,14 @@ async function save(path, stage, type, ending) {
 
 document.addEventListener("input", ({ target }) => {
   if (target.type === "range") slide(target);
+  else if (target.name === "line") return;
   else if (target.name) follow(target);
   else return;
   release(one("input[name]", target.parentElement));
   change();
 });
 document.addEventListener("change", ({ target }) => {
+  if (target.name === "line") fill(target);
   if (target.className === "variant") open(document.forms.namedItem(target.value));
   if (target.className === "material") {
     choose(target);
