@@ -182,6 +182,11 @@ def answer(
     return reply | ({"next": None} if is_finer else {})
 
 
+def forget() -> None:
+    """Drop the solutions that are kept."""
+    _recent.cache_clear()
+
+
 def finer(case: Case) -> Case:
     """Return a case on finer cells, with stresses of a small error."""
     data: dict[str, Any] = copy.deepcopy(case.data)

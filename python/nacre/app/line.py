@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-import nacre
+from nacre._tools.notices import heard
 from nacre._tools.units import number_in
 from nacre.app.answer import Measured
 from nacre.app.cards import Card
@@ -318,15 +317,14 @@ def _estimate(line: Line, card: Card) -> tuple[dict[str, str], str]:
     arguments: dict[str, Any] = {name: known[symbol] for symbol, name in NEEDED.items()}
     if "Z" in line.values:
         arguments["count"] = int(line.values["Z"])
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", nacre.NacreWarning)
+    with heard() as notes:
         ball = estimated_balls(**arguments)
         agreement = check(ball, capacity=known["C"])
     estimated = {}
     for name in ESTIMATED:
         field = card.by_path[f"bearing.{name}"]
         estimated[field.path] = _typed(field, getattr(ball, name), "m" if field.unit else "", 4)
-    return estimated, f"{line.designation}: {caught[0].message}; {agreement}".removeprefix(": ")
+    return estimated, f"{line.designation}: {notes[0]}; {agreement}".removeprefix(": ")
 
 
 def _dimensions(designation: str) -> dict[str, float]:

@@ -33,6 +33,11 @@ def files(cards: Mapping[str, Card]) -> Files:
     }
 
 
+def opened(card: Card) -> dict[str, str]:
+    """Return the form of a card of files that were opened, and its tab."""
+    return {"form": _form(card, [card]), "tab": markup("tab", name=card.name, group=card.group)}
+
+
 def _form(card: Card, cards: Iterable[Card]) -> Markup:
     """Return the form of a card: variants, materials, main fields, and all others."""
     kinds = [variant for variant in cards if variant.group == card.group]

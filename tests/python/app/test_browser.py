@@ -432,7 +432,7 @@ def test_a_line_of_text_fills_the_card(browser: Any, url: str, tmp_path: Path) -
         assert page.at(f"field:bearing.{path}").input_value() == text
     assert "are estimates from the ratings" in str(page.at("warnings").text_content())
     assert "# estimated: 6206: count 9" in saved(page, "case-file", tmp_path).read_text("utf-8")
-    again = Opened(browser, url, page.page.url.removeprefix(url))  # the link has the line and the mark
+    again = Opened(browser, url, page.page.url.removeprefix(url))
     again.wait()
     assert "are estimates from the ratings" in str(again.at("warnings").text_content())
     again.type("bearing.diameter", "9.525")
