@@ -106,7 +106,9 @@ class Measured(NamedTuple):
     tables: Answer
     """Tables of the case file, which have other ones in their place on the page."""
     files: Rows
-    """Files, with their SHA-256."""
+    """Files, with their SHA-256, and what is estimated."""
+    notes: Sequence[str] = ()
+    """What is estimated, in sentences."""
 
 
 NONE = Measured({}, {}, ())
@@ -175,9 +177,14 @@ def answer(
         return {"error": " ".join(str(error).split())[:600] or type(error).__name__}
 
     followed = "solve the case file on finer cells" if is_finer else 'press "Finer"'
-    warnings = reply["parts"]["warnings"]
+    warnings = [*measured.notes, *reply["parts"]["warnings"]]
     reply["parts"]["warnings"] = [COARSE.sub(followed, text) for text in warnings]
     return reply | ({"next": None} if is_finer else {})
+
+
+def forget() -> None:
+    """Drop the solutions that are kept."""
+    _recent.cache_clear()
 
 
 def finer(case: Case) -> Case:
@@ -197,7 +204,8 @@ def finer(case: Case) -> Case:
 
 def file_text(case: Case, measured: Measured = NONE) -> str:
     """Return the case file of what the page shows."""
-    notes = f"{case.name}: nacre solve FILE", f"written by nacre {core.__version__}"
+    notes = [f"{case.name}: nacre solve FILE", f"written by nacre {core.__version__}"]
+    notes += [f"{row.label}: {row.text}" for row in measured.files]
     return toml.text(case.data | measured.tables, notes)
 
 

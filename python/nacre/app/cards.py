@@ -36,6 +36,8 @@ LOADS = 60
 """Number of loads of an indentation, whose depths are evenly spaced."""
 CHOSEN = {"solve.max_cells", "bearing.solve.cells", "grid.cells", "grid.width", "counterbody.ends"}
 """Numbers of cells, sizes and ends that cards choose."""
+STATIONS = {f"{table}.profile.{key}" for table in ("shape", "bearing") for key in ("x", "drop")}
+"""Lists of a measured profile, whose numbers are no fields."""
 IDLE = tuple(f".{key}" for keys in LIMITS.values() for key in keys)
 """Ends of the paths of limits, which act in some cases only."""
 BONDS = ("shear", "tension")
@@ -233,7 +235,7 @@ def own_card(path: AnyPath) -> Card:
     if case.kind == "contact" and "fatigue" not in data:
         data.setdefault("stress", {})  # which the page shows
     check_size(data)
-    fields = _other_fields(data, measured.tables.keys())
+    fields = _other_fields(data, measured.tables.keys() | STATIONS)
     ranks = {table: rank for rank, table in enumerate(FIRST)}
     fields.sort(key=lambda field: ranks.get(field.path.partition(".")[0], len(ranks)))
     main, more = fields[:MOST_FIELDS], fields[MOST_FIELDS:]

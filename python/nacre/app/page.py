@@ -10,6 +10,7 @@ import nacre
 from nacre._tools.markup import Markup, Parts, text_of
 from nacre.app.cards import Card
 from nacre.app.fields import Field
+from nacre.app.line import LINES
 from nacre.results import svg
 
 Files = dict[str, tuple[str, bytes]]
@@ -32,6 +33,11 @@ def files(cards: Mapping[str, Card]) -> Files:
     }
 
 
+def opened(card: Card) -> dict[str, str]:
+    """Return the form of a card of files that were opened, and its tab."""
+    return {"form": _form(card, [card]), "tab": markup("tab", name=card.name, group=card.group)}
+
+
 def _form(card: Card, cards: Iterable[Card]) -> Markup:
     """Return the form of a card: variants, materials, main fields, and all others."""
     kinds = [variant for variant in cards if variant.group == card.group]
@@ -43,6 +49,7 @@ def _form(card: Card, cards: Iterable[Card]) -> Markup:
         "form",
         name=card.name,
         group=card.group,
+        line=markup("line", name=card.name) if card.name in LINES else "",
         menu=markup("menu", options=options) if len(kinds) > 1 else "",
         materials=list(_materials(card)),
         fields=[_field(card, field) for field in card.fields],

@@ -17,17 +17,19 @@ from socketserver import TCPServer
 from typing import Any
 
 import nacre
-from nacre.app.answer import STAGES, Answer, Going, Stopped, answer
+from nacre.app.answer import STAGES, Answer, Going, Stopped, answer, forget
 from nacre.app.cards import Card
 from nacre.app.fields import FieldError
-from nacre.app.page import files
+from nacre.app.line import filled, with_note
+from nacre.app.opened import LARGEST, Asks, opened_card
+from nacre.app.page import files, opened
 from nacre.case import CaseError
 
 ADDRESS = "127.0.0.1"
 PORTS = 10
 """Number of ports that are tried."""
-MOST_BYTES = 64 * 1024
-"""Largest size of a question."""
+MOST_BYTES = 64 * 1024 + 4 * (LARGEST // 3 + 1)
+"""Largest size of a question, whose files are in base64."""
 MOST_PAGES = 64
 """Number of pages whose newest question is known."""
 LANE = 2
@@ -36,7 +38,9 @@ SECONDS = 30.0
 """Longest time of an answer, and of a connection without a question."""
 QUESTION = {"card": str, "values": dict, "stage": str, "page": str, "age": int}
 """Parts of a question, and their types."""
-STAGES_AT = {"/answer": (*STAGES, "case"), "/report": ("report",)}
+WITH_FILES = QUESTION | {"files": dict}
+"""Those of a question on files."""
+STAGES_AT = {"/answer": (*STAGES, "case", "line", "open"), "/report": ("report",)}
 """Stages that may be asked for, by path."""
 HEADERS = {
     "Content-Security-Policy": (
@@ -117,18 +121,30 @@ class Server(ThreadingHTTPServer):
 
     def reply(self, question: Mapping[str, Any]) -> Answer:
         """Return the answer to a question."""
-        card, stage = self.cards[question["card"]], question["stage"]
+        stage, sent = question["stage"], question.get("files")
         going = self.going(question["page"][:60], question["age"])
+        values = dict(question["values"])
+        text = str(values.pop("line", ""))
         try:
-            case = card.case(question["values"])
+            card = opened_card(sent) if sent else self.cards[question["card"]]
+            if stage == "open":
+                return {**opened(card)}
+            if stage == "line":
+                return filled(text, self.cards, card.name)._asdict()
+            case, measured = card.case(values), with_note(text, values, card)
             with self.lane(stage == "draft", going):
-                return answer(case, stage, going, card.measured)
+                return answer(case, stage, going, measured)
+        except Asks as error:
+            return {"error": str(error), "ask": error.what}
         except FieldError as error:
             return {"error": str(error), "field": error.path}
         except (LookupError, ValueError) as error:
             return {"error": " ".join(str(error).split())}
         except Stopped:
             return {"stopped": True}
+        finally:
+            if sent:  # nothing of these files is kept
+                forget()
 
     def content(self, question: Mapping[str, Any]) -> bytes:
         """Return the answer to a question as JSON; whatever fails is an answer, too."""
@@ -212,8 +228,12 @@ class Handler(BaseHTTPRequestHandler):
             raise Refused(400, "a question is JSON") from None
         if not (
             isinstance(question, dict)
-            and {key: type(value) for key, value in question.items()} == QUESTION
-            and question["card"] in self.server.cards
+            and {key: type(value) for key, value in question.items()} in (QUESTION, WITH_FILES)
+            and (
+                question["card"] == "own"
+                if "files" in question
+                else question["card"] in self.server.cards
+            )
             and question["stage"] in stages
         ):
             raise Refused(400, "no such question")

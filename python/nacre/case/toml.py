@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 """Keys that need no quotation marks."""
 
 
-def text(data: Mapping[str, object], comments: tuple[str, ...] = ()) -> str:
+def text(data: Mapping[str, object], comments: Iterable[str] = ()) -> str:
     """Return the TOML of a case, after comments.
 
     Examples

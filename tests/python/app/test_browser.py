@@ -419,3 +419,24 @@ def test_finer_cells_are_a_button(browser: Any, url: str) -> None:
     page.wait()
     assert page.page.locator('[data-testid="warnings"] li').count() == 0
     page.close()
+
+
+def test_a_line_of_text_fills_the_card(browser: Any, url: str, tmp_path: Path) -> None:
+    page = Opened(browser, url, "#card=bearing")
+    page.wait()
+    page.at("line").fill("6206, C 19,5 kN, C0 11,3 kN, Fr 2 kN, 3000/min, about 1 kN, 20000 h")
+    page.at("line").press("Enter")
+    sync_api.expect(page.page.locator(".note")).to_contain_text("about", timeout=SECONDS)
+    page.wait()
+    for path, text in {"count": "9", "diameter": "9.548", "solve.force.x": "2"}.items():
+        assert page.at(f"field:bearing.{path}").input_value() == text
+    assert "are estimates from the ratings" in str(page.at("warnings").text_content())
+    assert "# estimated: 6206: count 9" in saved(page, "case-file", tmp_path).read_text("utf-8")
+    again = Opened(browser, url, page.page.url.removeprefix(url))
+    again.wait()
+    assert "are estimates from the ratings" in str(again.at("warnings").text_content())
+    again.type("bearing.diameter", "9.525")
+    again.wait("busy", "done")
+    assert "are estimates" not in str(again.at("warnings").text_content())
+    again.close()
+    page.close()

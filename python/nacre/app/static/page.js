@@ -1,9 +1,10 @@
 "use strict";
 // The page asks the server for answers, and shows them. It knows no field and no physics.
-const REST = 300, PATIENCE = 1000, DELAYS = [200, 400, 800, 1600, 3200, 6400];
+const LARGEST = 1e7, REST = 300, PATIENCE = 1000, DELAYS = [200, 400, 800, 1600, 3200, 6400];
 const one = (selector, root = document) => root.querySelector(selector);
 const all = (selector, root = document) => [...root.querySelectorAll(selector)];
-const forms = [...document.forms], status = one("output"), problem = one(".error"), note = one(".note");
+let forms = [...document.forms], pending = null, sent = null;
+const status = one("output"), problem = one(".error"), note = one(".note");
 const id = crypto.randomUUID();
 let form, age = 0, timer, patience, request = null, drafting = false;
 
@@ -21,8 +22,9 @@ function tell(element, words) {
 }
 
 function question(stage) {
+  if (stage === "open") return { card: "own", values: {}, stage, page: id, age, files: pending };
   const values = Object.fromEntries(changed().map((input) => [input.name, input.value]));
-  return { card: form.name, values, stage, page: id, age };
+  return { card: form.name, values, stage, page: id, age, ...(form.name === "own" && sent && { files: sent }) };
 }
 
 // Where the program does not answer, it is asked again until it does, the values change, or the question is given up.
@@ -145,6 +147,49 @@ function release(input) {
   choose(select);
 }
 
+// A line of text fills the fields of the card that its designation names.
+async function fill({ value }) {
+  const { card, values, asked, error } = await post("answer", "line");
+  if (!values) return tell(problem, error);
+  form = document.forms.namedItem(card);
+  for (const [path, text] of Object.entries({ ...values, line: value })) one(`[name="${path}"]`, form).value = text;
+  open(form);
+  tell(note, asked.join(". "));
+}
+
+// Files are read here, and sent with each question: the program keeps none.
+const read = (file) => new Promise((done) => {
+  const reader = new FileReader();
+  reader.onload = () => done([file.name, reader.result.split(",")[1] ?? ""]);
+  reader.onerror = () => done([file.name, ""]);
+  reader.readAsDataURL(file);
+});
+
+async function take(list) {
+  const files = [...list];
+  if (!files.length) return;
+  if (files.reduce((sum, { size }) => sum + size, 0) > LARGEST) return tell(problem, "the page reads at most 10 MB: use nacre solve");
+  all("[data-reading]").forEach((input) => ([input.value, input.parentElement.hidden] = ["", true]));
+  pending = { contents: Object.fromEntries(await Promise.all(files.map(read))), reading: {} };
+  load();
+}
+
+async function load() {
+  const asked = pending, { error, ask, form: html, tab } = await post("answer", "open");
+  if (asked !== pending) return;
+  tell(problem, error);
+  if (ask) one(`[data-reading="${ask}"]`).parentElement.hidden = false;
+  if (!html) return;
+  sent = pending;
+  document.forms.namedItem("own")?.remove();
+  one('[data-group="own file"]')?.remove();
+  one(".inputs").insertAdjacentHTML("beforeend", html); // escaped by the server
+  one("nav").insertAdjacentHTML("beforeend", tab);
+  forms = [...document.forms];
+  all("[data-reading]").forEach((input) => (input.parentElement.hidden = true));
+  open(document.forms.namedItem("own"));
+}
+
 function open(card) {
   form = card;
   forms.forEach((other) => (other.hidden = other !== form));
@@ -182,12 +227,18 @@ async function save(path, stage, type, ending) {
 
 document.addEventListener("input", ({ target }) => {
   if (target.type === "range") slide(target);
+  else if (target.name === "line") return;
   else if (target.name) follow(target);
   else return;
   release(one("input[name]", target.parentElement));
   change();
 });
 document.addEventListener("change", ({ target }) => {
+  if (target.name === "line") fill(target);
+  if (target.dataset.reading) {
+    pending.reading[target.dataset.reading] = target.value;
+    load();
+  }
   if (target.className === "variant") open(document.forms.namedItem(target.value));
   if (target.className === "material") {
     choose(target);
@@ -195,7 +246,16 @@ document.addEventListener("change", ({ target }) => {
   }
 });
 document.addEventListener("submit", (event) => event.preventDefault());
-all(".tab").forEach((tab) => tab.addEventListener("click", () => open(forms.find((other) => other.dataset.group === tab.dataset.group))));
+one("nav").addEventListener("click", ({ target }) => {
+  if (target.className === "tab") open(forms.find((other) => other.dataset.group === target.dataset.group));
+});
+one("[data-testid=open]").addEventListener("click", () => one("[type=file]").click());
+one("[type=file]").addEventListener("change", ({ target }) => take(target.files).then(() => (target.value = "")));
+document.addEventListener("dragover", (event) => event.preventDefault());
+document.addEventListener("drop", (event) => {
+  event.preventDefault();
+  take(event.dataTransfer.files);
+});
 one("[data-testid=finer]").addEventListener("click", () => {
   if (drafting) return;
   clearTimeout(timer);
