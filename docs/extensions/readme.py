@@ -17,13 +17,17 @@ def section(name: str) -> str:
     )
     if found is None:
         raise ValueError(f"README.md has no section {name!r}")
-    return found[1].replace("](docs/", "](").replace("](examples", "](../examples")
+    return (
+        found[1].replace("](docs/", "](").replace("](examples", "](../examples")
+    )
 
 
 def fill(app: Any, page: str, source: list[str]) -> None:
     """Put sections in the place of `{readme} SECTION` blocks."""
     source[0] = re.sub(
-        r"```\{readme\} (\w+)\n```\n", lambda match: section(match[1]), source[0]
+        r"```\{readme\} (\w+)\n```\n",
+        lambda match: section(match[1]),
+        source[0],
     )
 
 
