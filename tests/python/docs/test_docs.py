@@ -120,10 +120,9 @@ def test_lines_of_code_fit_their_boxes() -> None:
 
 
 def test_the_front_page_is_readme() -> None:
-    page = (DOCS / "index.md").read_text(encoding="utf-8")
-    sections = re.findall(r"```\{readme\} (\w+)\n```\n", page)
-    marked = re.findall(r"<!-- begin: (\w+) -->", (ROOT / "README.md").read_text(encoding="utf-8"))
-    assert sections == marked == ["introduction", "use", "contents"]
+    page, other = ((DOCS / name).read_text(encoding="utf-8") for name in ("index.md", "when.md"))
+    sections = re.findall(rX    marked = re.findall(r"<!-- begin: (\w+) -->", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert sections == marked == ["introduction", "use", "contents", "purpose"]
     section = runpy.run_path(str(DOCS / "extensions" / "readme.py"))["section"]
     for name in sections:
         for link in re.findall(r"\]\(([^):#]+)[^):]*\)", section(name)):
