@@ -121,7 +121,9 @@ def test_lines_of_code_fit_their_boxes() -> None:
 
 def test_the_front_page_is_readme() -> None:
     page, other = ((DOCS / name).read_text(encoding="utf-8") for name in ("index.md", "when.md"))
-    sections = re.findall(rX    marked = re.findall(r"<!-- begin: (\w+) -->", (ROOT / "README.md").read_text(encoding="utf-8"))
+    sections = re.findall(r"```\{readme\} (\w+)\n```\n", page + other)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    marked = re.findall(r"<!-- begin: (\w+) -->", readme)
     assert sections == marked == ["introduction", "use", "contents", "purpose"]
     section = runpy.run_path(str(DOCS / "extensions" / "readme.py"))["section"]
     for name in sections:
