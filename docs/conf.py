@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 
 sys.path.insert(
     0, str(Path(__file__).parent / "extensions")
-)  # claims, drawings, names, provenance, work_counts
+)  # claims, drawings, names, provenance, readme, work_counts
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples"))  # paper
 
 project = "nacre"
@@ -36,6 +36,7 @@ extensions = [
     "work_counts",
     "names",
     "provenance",
+    "readme",
 ]
 # Links into the pages of other libraries need their inventories from the network; `make docs` needs
 # none.

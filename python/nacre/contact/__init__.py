@@ -938,14 +938,14 @@ def _step_callback(progress: StepProgress | None) -> Callable[..., object] | Non
 
 
 def _checked_solution(solved: core.Solved, shape: core.Shape, check: bool) -> Solution:
-    """Issue the warnings of a solution, and return it if its tolerance was met."""
+    """Return a solution and issue its warnings, unless its tolerance was not met."""
     solution = Solution._of(solved, shape)
-    for message in solution.report.warnings:
-        warn(message)
     if check and (missed := solved.not_converged()) is not None:
         error = core.ConvergenceError(missed)
         error.solution = solution
         raise error
+    for message in solution.report.warnings:
+        warn(message)
     return solution
 
 
@@ -999,12 +999,12 @@ def _solve_steps(
             for solved in steps:
                 solution = FrictionSolution._of(solved, shape)
                 termination = solution.report.termination
-                for warning in solution.report.warnings if termination != "stopped" else []:
-                    warn(warning)
                 if options.check and termination == "iteration limit":
                     error = core.ConvergenceError(solved.not_converged())
                     error.solution = solution
                     raise error
+                for warning in solution.report.warnings if termination != "stopped" else []:
+                    warn(warning)
                 solutions.append(solution)
                 if termination == "stopped":
                     break

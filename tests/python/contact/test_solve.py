@@ -206,6 +206,22 @@ def test_an_unfinished_solution_is_carried_by_its_error_or_returned_unchecked() 
     np.testing.assert_array_equal(unchecked.pressure, unfinished.pressure)
 
 
+def test_an_error_is_not_preceded_by_warnings_of_what_it_carries(
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    few = nacre.Grid((16, 16), (4e-4, 4e-4))
+    for unfinished in (
+        lambda: nacre.solve(BALL, COATED, load=20.0, max_iterations=2),
+        lambda: nacre.slide(
+            BALL, COATED, load=10.0, grid=few, friction=0.3, force=(2.0, 0.0), max_convolutions=1
+        ),
+    ):
+        with pytest.raises(nacre.ConvergenceError) as caught:
+            unfinished()
+        assert caught.value.solution.report.warnings  # of a draft, which say nothing of the contact
+    assert list(recwarn) == []
+
+
 def test_a_report_tells_what_was_done() -> None:
     solution = nacre.solve(BALL, COATED, load=LOAD, grid=GRID, tolerance=1e-6)
     report = solution.report

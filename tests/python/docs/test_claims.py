@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 from pathlib import Path
@@ -42,3 +43,13 @@ def test_the_page_shows_every_section_and_states_no_other_error() -> None:
     )
     # Tables are made from the claims; the prose states the tolerance of solves alone.
     assert set(re.findall(r"\d(?:\.\d+)?e-\d+", page)) <= {"1e-8"}
+
+
+def test_sliding_against_a_rigid_counterbody_takes_several_times_as_many_convolutions() -> None:
+    """As the pages on speed and friction say of the table of counted work."""
+    with (ROOT / "benches/counts.csv").open(encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["convolutions"]]
+    newest = {row["case"]: float(row["convolutions"]) for row in rows}
+    assert 2 < newest["slide/rigid"] / newest["slide/equal"] < 10
+    for page in ("speed", "theory/friction"):
+        assert "several times as many" in (ROOT / f"docs/{page}.md").read_text(encoding="utf-8")

@@ -119,12 +119,19 @@ def test_lines_of_code_fit_their_boxes() -> None:
         assert max(map(len, lines)) <= 80, program
 
 
-def test_the_front_page_lists_what_readme_lists() -> None:
-    def listed(page: Path) -> list[str]:
-        entries = page.read_text(encoding="utf-8").partition("On this core stand:\n\n- ")[2]
-        return entries.partition("\n\n")[0].split("\n- ")
-
-    assert listed(DOCS / "index.md") == listed(ROOT / "README.md") != [""]
+def test_the_front_page_is_readme() -> None:
+    page, other = ((DOCS / name).read_text(encoding="utf-8") for name in ("index.md", "when.md"))
+    sections = re.findall(r"```\{readme\} (\w+)\n```\n", page + other)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    marked = re.findall(r"<!-- begin: (\w+) -->", readme)
+    assert sections == marked == ["introduction", "use", "contents", "purpose"]
+    section = runpy.run_path(str(DOCS / "extensions" / "readme.py"))["section"]
+    for name in sections:
+        for link in re.findall(r"\]\(([^):#]+)[^):]*\)", section(name)):
+            assert (DOCS / link).exists(), link
+    assert "| draw the pressure | `solution.plot()` |" in section("use")
+    assert "On this core stand:" in section("contents")
+    assert "On this core stand:" not in page
 
 
 def test_the_list_of_pages_says_what_each_is_for() -> None:

@@ -164,6 +164,15 @@ def test_figures_are_ratios() -> None:
     assert f"| {report.TITLES['hertz']} | 4.5 | 90 | – |" in lines
 
 
+@pytest.fixture
+def no_tamaas(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep the processes of a run from importing Tamaas, installed or not."""
+    text = "raise ModuleNotFoundError(\"No module named 'tamaas'\")\n"
+    (tmp_path / "tamaas.py").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)  # `python -m` looks there first
+
+
+@pytest.mark.usefixtures("no_tamaas")
 def test_a_run_goes_on_where_a_program_is_missing_and_writes_what_it_has(tmp_path: Path) -> None:
     bench = Bench(tmp_path, limit=60.0)
     bench.sweep("hertz", "nacre", 1, [32, 64], soft=60.0)
@@ -216,6 +225,7 @@ def test_solves_in_turn_are_rows_with_an_error(tmp_path: Path) -> None:
     assert batch.note.endswith(f"; {3 / (batch.seconds or 1):.0f} solves a second")
 
 
+@pytest.mark.usefixtures("no_tamaas")
 def test_what_fails_in_turn_says_why(tmp_path: Path) -> None:
     bench = Bench(tmp_path, limit=60.0)
     row, request = bench.solves(Problem("hertz", 32), 1, "idle")
