@@ -209,7 +209,7 @@ STATES = json.loads((DATA / "states_0_1_0.json").read_text(encoding="utf-8"))["s
 """States that version 0.1.0 wrote, before its release."""
 STORED: dict[str, tuple[Callable[[Any], object], tuple[Any, ...]]] = {
     "creep_coefficients": (lambda one: one.c11, ("c11",)),
-    "life": (lambda one: one.l10, ("revolutions",)),  # those of L_10r, in millions
+    "life": (lambda one: one.l10r, ("revolutions",)),  # those of L_10r, in millions
     "one": (lambda one: one.radius, ("radius",)),
     "maugis": (lambda one: one.outer_radius, ("outer_radius",)),
     "volume": (lambda one: one.integral, ("integral",)),
