@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
+from nacre._tools.notices import warn
 
-def warn_of(old: str, new: str, depth: int = 3) -> None:
-    """Warn that an old name is used; `depth` is the frame of the user's call."""
-    warnings.warn(f"{old} is deprecated: write {new}", DeprecationWarning, stacklevel=depth)
+
+def warn_of(old: str, new: str) -> None:
+    """Warn of the use of an old name."""
+    warn(f"{old} is deprecated: write {new}", DeprecationWarning)
 
 
 def renamed(old: str, new: str) -> Any:

@@ -14,6 +14,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.groups import names_itself, with_units
 from nacre._tools.notices import warn
+from nacre._tools.paths import by_layer
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
 from nacre._tools.units import rounded, written
@@ -711,7 +712,9 @@ class StressPlan:
         True
         """
         fields = StressFields(side, x, y, displacement)
-        options = StressOptions(self._member, friction, direction, residual, None, progress)
+        options = StressOptions(
+            self._member, friction, direction, by_layer(residual), None, progress
+        )
         return _warned(Stress(**core.stress(self._plan, z, fields, options)))
 
     def summary(
@@ -755,7 +758,9 @@ class StressPlan:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        options = StressOptions(self._member, friction, direction, residual, None, progress)
+        options = StressOptions(
+            self._member, friction, direction, by_layer(residual), None, progress
+        )
         limits = yield_stress, strength, bond_strength, None
         return _warned(self._solution._summary(self._plan, options, *limits))
 
@@ -872,7 +877,7 @@ class Stressed:
         (True, False)
         """
         fields = StressFields(side, x, y, displacement)
-        options = StressOptions(body, friction, direction, residual, threads, progress)
+        options = StressOptions(body, friction, direction, by_layer(residual), threads, progress)
         return _warned(Stress(**core.stress(self._solved, z, fields, options)))
 
     @names_itself
@@ -953,7 +958,7 @@ class Stressed:
         True
         """
         error = (REFINED if refine else None) if isinstance(refine, bool) else refine
-        options = StressOptions(body, friction, direction, residual, threads, progress)
+        options = StressOptions(body, friction, direction, by_layer(residual), threads, progress)
         limits = yield_stress, strength, bond_strength, error
         return _warned(self._summary(self._solved, options, *limits))
 
@@ -967,7 +972,8 @@ class Stressed:
         refine: float | None,
     ) -> StressSummary:
         """Return the extremes in a body, of the contact or of a plan of it."""
-        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, refine)
+        yields = numbers_of(yield_stress, "yield_stress")
+        limits = StressLimits(yields, by_layer(strength), refine)
         member = _check_limits_of(self, options.body, limits)
         contact = {"bond_strength": _bond_strengths(self, options.body, bond_strength)}
         with lasting("stresses", options.progress) as tell:
@@ -1139,7 +1145,7 @@ def stress(
     True
     """
     fields = StressFields(side, x, y, displacement)
-    options = StressOptions("body", friction, direction, residual, threads, progress)
+    options = StressOptions("body", friction, direction, by_layer(residual), threads, progress)
     return Stress(**core.stress_under(body, grid, pressure, z, fields, options))
 
 
@@ -1309,7 +1315,7 @@ def _bond_strengths(
     body = report.counterbody if among(member, ("counterbody",)) else report.body
     layers = body.layers if isinstance(body, core.HalfSpace) else ()
     given: dict[Any, Any] = (
-        dict(bonds) if isinstance(bonds, Mapping) else dict.fromkeys(range(len(layers)), bonds)
+        by_layer(bonds) if isinstance(bonds, Mapping) else dict.fromkeys(range(len(layers)), bonds)
     )
     strengths: list[Bond | None] = []
     for k, layer in enumerate(layers):

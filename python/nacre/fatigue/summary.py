@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import with_units
+from nacre._tools.paths import by_layer
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre._tools.units import printable, written
@@ -735,7 +736,7 @@ def layer_values(
     count = len(body.layers) + isinstance(body.substrate, core.Elastic)
     if np.ndim(stress) == 0 and not isinstance(stress, Mapping | None):  # type: ignore[arg-type]
         return [core.real(name, stress)] * count
-    per_layer: list[float | None] = core.layer_values(body, name, stress)
+    per_layer: list[float | None] = core.layer_values(body, name, by_layer(stress))
     return per_layer + [None] * (count - len(per_layer))
 
 

@@ -96,7 +96,7 @@ VALUES = MADE_BY_A_CALL | {
         [0.0, 1e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
     ),
     "stress plan": SOLUTION.stress_plan(threads=1),
-    "gradient": SOLUTION.gradient("located_peak"),
+    "gradient": SOLUTION.gradient("peak_pressure"),
     "weighted gradient": SOLUTION.vjp(np.ones((48, 50)), ["load"]),
     "direction": SOLUTION.jvp({"load": 1.0}),
     "card": nacre.materials["TiN"],
