@@ -6,12 +6,12 @@ import operator
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import nacre._core as core
 from nacre._tools.paths import LAYER, numbered, numbers
 from nacre._tools.renamed import warn_of
-from nacre._tools.typing import Field, Pair
+from nacre._tools.typing import Field, Pair, components
 from nacre.results import display
 from nacre.results.base import Fields, same
 
@@ -111,13 +111,13 @@ def _stress(table: Mapping[str, object]) -> tuple[str, object]:
         number = _count(key, where)
         interface = {"interface": number, "side": side}
         name, place = f"{word} at interface {number}", {"interface": interface | sharp}
-    direction = table.get("direction")
+    direction: Any = table.get("direction")
     stress = {
         "member": table.get("body", "body"),
         "measure": MEASURES[word],
         "place": place,
         "friction": core.real("friction", table.get("friction", 0.0)),
-        "direction": None if direction is None else _numbers("direction", direction, 2),
+        "direction": None if direction is None else _numbers("direction", components(direction), 2),
     }
     return name, {"stress": stress}
 

@@ -16,7 +16,7 @@ from nacre._tools.groups import names_itself, with_units
 from nacre._tools.notices import warn
 from nacre._tools.paths import by_layer
 from nacre._tools.progress import lasting
-from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
+from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among, components
 from nacre._tools.units import rounded, written
 from nacre.cards import Limits, materials, names_of, numbers_of
 from nacre.contact import plausible
@@ -81,7 +81,7 @@ LARGEST_CONTACT = 0.5
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 UNFINISHED = "stopped before all depths were done"
-REFINED = 0.01
+REFINED = 0.05
 """Largest estimated error of extremes where `refine` is True."""
 AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
@@ -93,7 +93,7 @@ class StressOptions:
 
     body: Member
     friction: float
-    direction: Direction | None
+    direction: Pair | None
     residual: ByLayer | None
     threads: int | None
     progress: Progress | None
@@ -713,7 +713,7 @@ class StressPlan:
         """
         fields = StressFields(side, x, y, displacement)
         options = StressOptions(
-            self._member, friction, direction, by_layer(residual), None, progress
+            self._member, friction, components(direction), by_layer(residual), None, progress
         )
         return _warned(Stress(**core.stress(self._plan, z, fields, options)))
 
@@ -759,7 +759,7 @@ class StressPlan:
         True
         """
         options = StressOptions(
-            self._member, friction, direction, by_layer(residual), None, progress
+            self._member, friction, components(direction), by_layer(residual), None, progress
         )
         limits = yield_stress, strength, bond_strength, None
         return _warned(self._solution._summary(self._plan, options, *limits))
@@ -826,8 +826,9 @@ class Stressed:
         friction : float, optional
             Coefficient of friction: adds the traction ``friction * pressure``. It must be 0 where
             the tractions are known, of `nacre.slide` and `nacre.roll`.
-        direction : tuple of float, optional
-            Direction ``(x, y)`` of the traction on the body, of any length; the traction on the
+        direction : tuple of float or str, optional
+            Direction ``(x, y)`` of the traction on the body, of any length, or ``"+x"`` to
+            ``"-y"``; the traction on the
             counterbody is opposite. By default the direction in which the shape rolls,
             `Report.rolling_direction`: across the axis of a roller or cylinder, and across the
             strips of a line contact; x below a body of revolution that is pressed on its axis, as
@@ -877,7 +878,9 @@ class Stressed:
         (True, False)
         """
         fields = StressFields(side, x, y, displacement)
-        options = StressOptions(body, friction, direction, by_layer(residual), threads, progress)
+        options = StressOptions(
+            body, friction, components(direction), by_layer(residual), threads, progress
+        )
         return _warned(Stress(**core.stress(self._solved, z, fields, options)))
 
     @names_itself
@@ -917,7 +920,7 @@ class Stressed:
             ``{0: (shear, tension)}`` by number, or the name of the layer above. One of them may be
             None.
         refine : bool or float, optional
-            Largest estimated error of the extremes, as a part of them, such as 0.05; True is 0.01.
+            Largest estimated error of the extremes, as a part of them, such as 0.01; True is 0.05.
             Patches that hold the places where value and error together exceed an extreme by more
             are solved again on finer cells, until the error is below it or a patch has as many
             cells as the grid or 512 × 512, whichever is more. By default, and with False, the cells
@@ -958,7 +961,9 @@ class Stressed:
         True
         """
         error = (REFINED if refine else None) if isinstance(refine, bool) else refine
-        options = StressOptions(body, friction, direction, by_layer(residual), threads, progress)
+        options = StressOptions(
+            body, friction, components(direction), by_layer(residual), threads, progress
+        )
         limits = yield_stress, strength, bond_strength, error
         return _warned(self._summary(self._solved, options, *limits))
 
@@ -1039,7 +1044,7 @@ class Stressed:
         return summary.verdict()
 
     def _sliding(
-        self, friction: float, direction: Direction | None, body: Member
+        self, friction: float, direction: Pair | None, body: Member
     ) -> tuple[float, float]:
         """Return the traction on a body over the pressure, of arguments that were accepted."""
         if friction == 0:
@@ -1145,7 +1150,9 @@ def stress(
     True
     """
     fields = StressFields(side, x, y, displacement)
-    options = StressOptions("body", friction, direction, by_layer(residual), threads, progress)
+    options = StressOptions(
+        "body", friction, components(direction), by_layer(residual), threads, progress
+    )
     return Stress(**core.stress_under(body, grid, pressure, z, fields, options))
 
 

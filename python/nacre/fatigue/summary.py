@@ -815,8 +815,9 @@ def assess(
     friction : float, optional
         Coefficient of friction: adds the traction ``friction * pressure``. It must be 0 where the
         tractions are known, of `nacre.slide` and `nacre.roll`.
-    direction : tuple of float, optional
-        Direction ``(x, y)`` of the traction on the body; by default along y.
+    direction : tuple of float or str, optional
+        Direction of the traction on the body, ``(x, y)`` or ``"+x"`` to ``"-y"``; by default
+        along y.
     residual : dict or sequence, optional
         Residual stress [Pa], equal along x and y, that is added to every state of a layer, the
         unloaded one too; by layer as `shear_yield`.
