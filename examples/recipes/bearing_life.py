@@ -17,7 +17,7 @@ balls = bearing.DeepGrooveBall(
     outer=steel,
 )
 solution = balls.solve(force=(None, None, 1000.0), model="iso16281")
-life = solution.life().l10
+life = solution.life().l10r
 print(f"{solution.displacement[2] * 1e6:.2f} µm, {life:.1f} million revolutions")
 
 # Printed by MASTA.

@@ -6,7 +6,7 @@ import nacre
 
 steel = nacre.Elastic(young=210e9, poisson=0.3)
 solution = nacre.solve(nacre.Paraboloid(10e-3, 10e-3), steel, load=20.0)
-peak = solution.gradient("located_peak")
+peak = solution.gradient("peak_pressure")
 for path, number in (("load", 20.0), ("body.substrate.young", 210e9)):
     exponent = peak[path] * number / peak.value
     print(f"the peak pressure grows as {path} to the power of {exponent:.3f}")

@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 import nacre._core as core
+from nacre._tools.paths import by_layer
 from nacre._tools.typing import ByLayer
 from nacre._tools.units import SI, Within, printable, written
 
@@ -237,6 +238,7 @@ def numbers_of(limits: Limits | None, name: str) -> ByLayer | None:
         known = limit.numbers.get(name) if isinstance(limit, Card) else None
         return known.value if known else None if isinstance(limit, Card) else limit
 
+    limits = by_layer(limits)
     if isinstance(limits, Mapping):
         numbers = {key: number(limit) for key, limit in limits.items()}
         return {
@@ -248,6 +250,7 @@ def numbers_of(limits: Limits | None, name: str) -> ByLayer | None:
 
 def names_of(limits: Limits | None, body: object) -> tuple[str | None, ...] | None:
     """Return the names of the cards in limits of a body, from the surface down; None without."""
+    limits = by_layer(limits)
     if isinstance(limits, Mapping) and isinstance(body, core.HalfSpace):
         known = {key: limit.name for key, limit in limits.items() if isinstance(limit, Card)}
         numbers = {key: float(place) for place, key in enumerate(known)}

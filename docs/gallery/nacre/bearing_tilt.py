@@ -56,9 +56,9 @@ with plt.rc_context(plot.STYLE):
         if name == "coated":
             continue
         lives = {
-            "ISO's factors": [one.life("standard").l10 for one in solved],
-            "solved": [one.life("pressure").l10 for one in solved],
-            "none": [one.life(None).l10 for one in solved],
+            "ISO's factors": [one.life("standard").l10r for one in solved],
+            "solved": [one.life("pressure").l10r for one in solved],
+            "none": [one.life(None).l10r for one in solved],
         }
         for (words, life), dashes in zip(
             lives.items(), ("-", "--", ":"), strict=True

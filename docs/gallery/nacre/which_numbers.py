@@ -26,7 +26,7 @@ numbers = {
     "load": ("load", 10.0),
 }
 outputs: dict[str, Any] = {
-    "peak pressure": "located_peak",
+    "peak pressure": "peak_pressure",
     "approach": "approach",
     "shear at the interface": {
         "stress": "plane_shear",

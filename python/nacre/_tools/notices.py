@@ -16,12 +16,12 @@ HEARING = threading.Lock()
 PACKAGE = str(Path(core.__file__).parent)
 
 
-def warn(message: str) -> None:
-    """Issue a `NacreWarning` of the call that entered the package."""
+def warn(message: str, category: type[Warning] = core.NacreWarning) -> None:
+    """Issue a warning, by default a `NacreWarning`, of the call that entered the package."""
     level, frame = 1, sys._getframe()
     while frame is not None and frame.f_code.co_filename.startswith(PACKAGE):
         level, frame = level + 1, frame.f_back  # type: ignore[assignment]
-    warnings.warn(message, core.NacreWarning, stacklevel=level)
+    warnings.warn(message, category, stacklevel=level)
 
 
 @contextmanager

@@ -1,9 +1,13 @@
-"""Numbers in the arguments of a call, by path: ``body.layers[0].material.young``."""
+"""Numbers in the arguments of a call, by path: ``body.layers[0].material.young``.
+
+A layer has its number or its name in a path, in brackets or after a point.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +16,8 @@ import nacre._core as core
 BODIES = ("body", "counterbody")
 DIFFERENTIABLE = (*BODIES, "load", "approach", "eccentricity", "moment", "tilt")
 """Arguments of a solve, beside the shape, that have derivatives."""
+LAYER = re.compile(r"(?:(body|counterbody)\.)?layers[.\[]([^.\[\]]+)\]?")
+"""Start of a path that leads into a layer."""
 
 
 def numbers(arguments: Mapping[str, object]) -> dict[str, float]:
@@ -56,3 +62,29 @@ def with_half_spaces(arguments: Mapping[str, object]) -> dict[str, object]:
         name: core.HalfSpace(value) if name in BODIES and isinstance(value, core.Elastic) else value
         for name, value in arguments.items()
     }
+
+
+def numbered(arguments: Mapping[str, object], paths: Iterable[str]) -> list[str]:
+    """Return paths with the numbers of layers in place of names that one layer of a body has."""
+
+    def in_numbers(path: str) -> str:
+        match = LAYER.match(path) if isinstance(path, str) else None
+        if match is None or match[1] is None:
+            return path
+        layers: Any = getattr(arguments.get(match[1]), "layers", ())
+        places = [k for k, layer in enumerate(layers) if match[2] in (str(k), layer.name)]
+        start = f"{match[1]}.layers[{places[0]}]" if len(places) == 1 else match[0]
+        return start + path[match.end() :]
+
+    return [in_numbers(path) for path in paths]
+
+
+def by_layer(values: Any) -> Any:
+    """Return values by layer, with numbers and names in place of paths, ``layers[0]``."""
+
+    def layer(key: object) -> object:
+        match = LAYER.fullmatch(key) if isinstance(key, str) else None
+        name = key if match is None else match[2]
+        return int(name) if match and name.isdecimal() else name
+
+    return {layer(k): v for k, v in values.items()} if isinstance(values, Mapping) else values

@@ -6,9 +6,12 @@ tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 1628
 of them on one shaft.
 """
 
+from typing import TYPE_CHECKING
+
+from nacre._tools.renamed import warn_of
 from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
 from nacre.bearing.basic import basic_life, equivalent_dynamic_load, mean_dynamic_load
-from nacre.bearing.catalogue import CatalogueCheck, check, estimated_balls
+from nacre.bearing.catalogue import CatalogueCheck, compare_ratings, estimated_balls
 from nacre.bearing.film import Film, film_thickness
 from nacre.bearing.iso import edge_factors, load_integrals, rating
 from nacre.bearing.life import (
@@ -55,7 +58,7 @@ __all__ = [
     "TaperedRoller",
     "Zaretsky",
     "basic_life",
-    "check",
+    "compare_ratings",
     "contamination_range",
     "edge_factors",
     "equivalent_dynamic_load",
@@ -74,3 +77,14 @@ __all__ = [
     "static_rating",
     "stress_volume",
 ]
+
+
+def _old(name: str) -> object:
+    if name == "check":
+        warn_of("nacre.bearing.check", "nacre.bearing.compare_ratings")
+        return compare_ratings
+    raise AttributeError(f"module 'nacre.bearing' has no attribute {name!r}")
+
+
+if not TYPE_CHECKING:  # a type checker would take any name
+    __getattr__ = _old

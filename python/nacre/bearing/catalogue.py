@@ -51,7 +51,7 @@ class CatalogueCheck(NamedTuple):
         )
 
 
-def check(
+def compare_ratings(
     bearing: Bearing, *, capacity: float | None = None, static_capacity: float | None = None
 ) -> CatalogueCheck:
     """Compare the ratings of a bearing by its geometry with those of a catalogue.
@@ -81,9 +81,9 @@ def check(
 
     Examples
     --------
-    >>> from nacre.bearing import DeepGrooveBall, check
+    >>> from nacre.bearing import DeepGrooveBall, compare_ratings
     >>> bearing = DeepGrooveBall(count=9, diameter=7.9375e-3, pitch_diameter=38.5e-3)  # 6205
-    >>> print(check(bearing, capacity=14e3))
+    >>> print(compare_ratings(bearing, capacity=14e3))
     C of the catalogue: -0.11 % from that of ISO 281 for this geometry
     """
     bearing = checked_bearing(bearing)

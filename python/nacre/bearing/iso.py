@@ -155,7 +155,7 @@ def _shape(ratio: float, grooves: tuple[float, ...], thrust: bool) -> float:
 class ReferenceLife(NamedTuple):
     """Reference rating life, and what it is made of."""
 
-    l10: float
+    l10r: float
     """Life L_10r in millions of revolutions; infinite without load."""
     equivalent_load: float
     """Dynamic equivalent reference load [N]."""
@@ -277,10 +277,10 @@ def reference_life(
         for row in rows
         for ring in range(2)
     )
-    l10 = sums**life if sums > 0 else math.inf
-    return ReferenceLife(l10, equivalent_load(bearing, l10), ring_capacities, -exponent * life)
+    l10r = sums**life if sums > 0 else math.inf
+    return ReferenceLife(l10r, equivalent_load(bearing, l10r), ring_capacities, -exponent * life)
 
 
-def equivalent_load(bearing: Bearing, l10: float) -> float:
+def equivalent_load(bearing: Bearing, l10r: float) -> float:
     """Return the load of a life in millions of revolutions [N]; 0 of an infinite one."""
-    return float((bearing.capacity or 0.0) * l10 ** (-1 / bearing.standards.life_exponent))
+    return float((bearing.capacity or 0.0) * l10r ** (-1 / bearing.standards.life_exponent))

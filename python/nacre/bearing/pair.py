@@ -465,8 +465,8 @@ class PairLife(TableResult):
 
     revolutions: float = quantity(label="life of both")
     """Life of both in revolutions: 10 % of such pairs lose a bearing in it."""
-    hours: float = quantity()
-    """Life of both in hours: of operation; infinite where the bearings are at rest."""
+    hours: float | None = quantity()
+    """Life of both in hours: of operation; None where the bearings are at rest."""
     first: float = quantity(label="first bearing")
     """Life of the first bearing in revolutions; infinite without load."""
     second: float = quantity(label="second bearing")
@@ -513,7 +513,7 @@ class PairLife(TableResult):
             text = f"{rounded(life / 1e6, 4)} million revolutions"
             words = "infinite: no element is loaded"
             rows.append(Row(row.name, row.label, text if life < math.inf else words, life))
-        if math.isfinite(self.hours):
+        if self.hours is not None and math.isfinite(self.hours):
             rows.append(Row("hours", "hours", rounded(self.hours, 4), self.hours))
         if self.basic_life is not None and math.isfinite(self.basic_life):
             rows.append(basic_row(self.basic_life, hours_per_revolution(self)))
@@ -728,9 +728,10 @@ class PairSolution(Equilibrium):
         # Each error counts by the share of failures that are those of the bearing.
         errors = np.array([first.uncertainty, second.uncertainty], dtype=np.float64)
         error = float(np.average(errors, weights=shares))
+        hours = [life.hours for life in (first, second) if life.hours is not None]
         life = PairLife(
             revolutions=both,
-            hours=_both(np.array([first.hours, second.hours]), slope)[0],
+            hours=_both(np.array(hours), slope)[0] if len(hours) == 2 else None,
             first=first.revolutions,
             second=second.revolutions,
             model=first.model,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.renamed import renamed
 from nacre._tools.typing import among
 from nacre._tools.units import rounded
 from nacre.bearing.basic import ROLLERS, UNREAD, known_load, life_under, mean_dynamic_load
@@ -68,14 +69,14 @@ class BearingLife(TableResult):
     ...     count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, capacity=23.4e3
     ... )
     >>> life = bearing.solve(force=(1000.0, 0.0, None), speed=100.0, model="iso16281").life()
-    >>> 13e3 < life.l10 < 13.3e3, round(life.hours / life.revolutions * 3600 * 100, 3)
+    >>> 13e3 < life.l10r < 13.3e3, round(life.hours / life.revolutions * 3600 * 100, 3)
     (True, 6.283)
     """
 
     _TITLE = "rating life of a bearing"
     _IN_SI = True
     _LATER = (
-        *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
+        *("hours", "l10r", "reliability", "reliability_factor", "modification_factor"),
         *("viscosity_ratio", "contamination_factor", "required_life", *LATER),
         *("fatigue_load_limit", "simple_fatigue_load_limit"),
         "basic_load",
@@ -83,9 +84,9 @@ class BearingLife(TableResult):
 
     revolutions: float = quantity()
     """Life in revolutions: ``a_1 a_ISO L_10r``; infinite without load."""
-    hours: float = quantity()
-    """Life in hours of operation; infinite where the bearing is at rest, as without a speed."""
-    l10: float = quantity()
+    hours: float | None = quantity()
+    """Life in hours of operation; None where the bearing is at rest, as without a speed."""
+    l10r: float = quantity()
     """Reference rating life L_10r in millions of revolutions; infinite without load."""
     equivalent_load: float = quantity("N", label="equivalent load")
     """Equivalent reference load [N]; of a spectrum that of its L_10r."""
@@ -135,9 +136,9 @@ class BearingLife(TableResult):
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         fields = dict(state)
-        if fields.get("l10") is None:  # states of 0.1.0, of L_10r in millions of revolutions alone
-            fields |= {"l10": state["revolutions"], "revolutions": state["revolutions"] * 1e6}
-            fields |= {"hours": math.inf, "reliability": 0.9, "reliability_factor": 1.0}
+        if fields.get("l10r") is None:  # states of 0.1.0, of L_10r in millions of revolutions alone
+            fields |= {"l10r": state["revolutions"], "revolutions": state["revolutions"] * 1e6}
+            fields |= {"hours": None, "reliability": 0.9, "reliability_factor": 1.0}
         fields["notes"] = tuple(fields.get("notes") or ())
         return super()._restored(fields)
 
@@ -158,16 +159,16 @@ class BearingLife(TableResult):
         return life_verdict(required(self, required_life))
 
     def _rows(self) -> list[Row]:
-        if math.isinf(self.l10):
+        if math.isinf(self.l10r):
             words = "infinite: no element is loaded"
-            return [Row("l10", "life", words, self.l10), *super()._rows()]
-        text = f"{rounded(self.l10, 4)} million revolutions"
-        rows = [Row("l10", "life L10r", text, self.l10)]
+            return [Row("l10r", "life", words, self.l10r), *super()._rows()]
+        text = f"{rounded(self.l10r, 4)} million revolutions"
+        rows = [Row("l10r", "life L10r", text, self.l10r)]
         if self._is_modified or self.reliability_factor != 1:
             label = f"life L{round(100 * (1 - self.reliability), 6):g}{'m' * self._is_modified}"
             text = f"{rounded(self.revolutions / 1e6, 4)} million revolutions"
             rows.append(Row("revolutions", label, text, self.revolutions))
-        if math.isfinite(self.hours):
+        if self.hours is not None and math.isfinite(self.hours):
             rows.append(Row("hours", "hours", rounded(self.hours, 4), self.hours))
         if self.basic_life is not None and self.basic_load is not None:
             row = basic_row(self.basic_life, hours_per_revolution(self))
@@ -180,6 +181,8 @@ class BearingLife(TableResult):
 
     def _report_rows(self) -> Rows:
         return self._rows()
+
+    l10 = renamed("l10", "l10r")
 
     @property
     def _is_modified(self) -> bool:
@@ -196,7 +199,7 @@ def basic_row(life: float, hours: float) -> Row:
 
 def hours_per_revolution(life: BearingLife | PairLife) -> float:
     """Return the time of a revolution [h]; infinite at rest."""
-    return life.hours / life.revolutions if life.revolutions else math.inf
+    return life.hours / life.revolutions if life.hours else math.inf
 
 
 def compared(words: str | None) -> list[Row]:
@@ -386,7 +389,7 @@ def _notes(bearing: Bearing, life: BearingLife, terms: _Terms, speed: float) -> 
     texts = doubts_on("speed times pitch_diameter", speed * bearing.pitch)
     load = life.equivalent_load
     light = doubts_on("equivalent load", load, life.capacity) if load > 0 else []
-    if not light and math.isfinite(life.hours):
+    if not light and life.hours is not None and math.isfinite(life.hours):
         texts += doubts_on("life", life.hours)
     texts += light
     if terms.limit is not None and life.viscosity_ratio is not None:
@@ -402,7 +405,7 @@ def required(life: Life, hours: float | None) -> Life:
     """Return a life with the required one [h], checked."""
     if hours is None:
         return life
-    if not math.isfinite(life.hours) and math.isfinite(life.revolutions):
+    if life.hours is None and math.isfinite(life.revolutions):
         raise ValueError("required_life must be given with a speed, got none: there are no hours")
     return replace(life, required_life=above("required_life", hours))
 
@@ -426,8 +429,8 @@ def _life_of_spectrum(
     """Return the life under all loads, of which each uses up its share: Miner."""
     turned, is_known = sum(rate.cycles for rate in rates), terms.lubrication.is_known
     shares = [rate.cycles / turned for rate in rates] if turned else [1.0]
-    l10 = _harmonic(shares, [rate.reference.l10 for rate in rates])
-    lives = [rate.reference.l10 * rate.factor for rate in rates]
+    l10r = _harmonic(shares, [rate.reference.l10r for rate in rates])
+    lives = [rate.reference.l10r * rate.factor for rate in rates]
     modified, uncertainty = _harmonic(shares, lives), None
     if all(rate.least is not None for rate in rates):
         left = [life * (rate.least or 0.0) for rate, life in zip(rates, lives, strict=True)]
@@ -438,15 +441,15 @@ def _life_of_spectrum(
     is_roller = isinstance(bearing, RollerBearing)
     return BearingLife(
         revolutions=revolutions,
-        hours=revolutions * 2 * math.pi / turned / 3600 if turned else math.inf,
-        l10=l10,
-        equivalent_load=equivalent_load(bearing, l10),
+        hours=revolutions * 2 * math.pi / turned / 3600 if turned else None,
+        l10r=l10r,
+        equivalent_load=equivalent_load(bearing, l10r),
         capacity=float(bearing.capacity or 0.0),
         ring_capacities=rates[0].reference.capacities,
         reliability=reliability[0],
         reliability_factor=reliability[1],
         modification_factor=(
-            (modified / l10 if math.isfinite(l10) else rates[0].factor) if is_known else None
+            (modified / l10r if math.isfinite(l10r) else rates[0].factor) if is_known else None
         ),
         viscosity_ratio=min((rate.kappa for rate in rates if rate.kappa is not None), default=None),
         contamination_factor=terms.lubrication.cleanliness(bearing)[0] if is_known else None,

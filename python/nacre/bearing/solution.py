@@ -313,7 +313,7 @@ class BearingSolution(Equilibrium):
     @derived("million revolutions")
     def reference_life(self) -> float:
         """Life of ISO/TS 16281 [million revolutions], with the standard's edge factors."""
-        return self._reference().l10
+        return self._reference().l10r
 
     def _reference(self) -> BearingLife:
         """Return the life without lubrication and without warnings, for its verdict."""
@@ -574,7 +574,7 @@ class BearingSolution(Equilibrium):
         ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
         ... )
         >>> solution = bearing.solve(force=(4450.0, 0.0, None), speed=100.0, model="iso16281")
-        >>> round(solution.life().l10), round(solution.life(edge=None).l10)
+        >>> round(solution.life().l10r), round(solution.life(edge=None).l10r)
         (4997, 5184)
         >>> oil = {"kinematic_viscosity": 20e-6, "contamination": "normal cleanliness"}
         >>> life = solution.life(**oil)

@@ -128,15 +128,15 @@ def _question(life: BearingLife | PairLife, static_safety: float | None) -> str 
 
 def _life_demand(life: BearingLife | PairLife) -> Demand:
     """Return the life, in hours where it turns."""
-    turns = math.isfinite(life.hours)
-    value = life.hours if turns else life.revolutions
+    hours = life.hours if life.hours and math.isfinite(life.hours) else None
+    value = life.revolutions if hours is None else hours
     error = life.uncertainty
     part, limit = "of both bearings" if life._of else "", life.required_life
     demand = Demand("life", part, value, error and error * value, None, limit, "given", "h", True)
-    return demand._replace(sentence=_life_sentence(life, demand, turns), leads=True)
+    return demand._replace(sentence=_life_sentence(life, demand, hours), leads=True)
 
 
-def _life_sentence(life: BearingLife | PairLife, demand: Demand, turns: bool) -> str:
+def _life_sentence(life: BearingLife | PairLife, demand: Demand, hours: float | None) -> str:
     """Return how long a bearing or a pair lives, and what is required."""
     if not math.isfinite(life.revolutions):
         return "Lives without end: no element is loaded."
@@ -145,9 +145,9 @@ def _life_sentence(life: BearingLife | PairLife, demand: Demand, turns: bool) ->
     model = "ISO 281, with a_ISO" if is_modified else "ISO/TS 16281, without lubrication"
     basis = f"{life._of}{plain(100 * life.reliability, DIGITS)} %, {model}"
     duration = _revolutions(life.revolutions)
-    if turns:
-        rate = plain(life.revolutions / life.hours / MINUTES, DIGITS)
-        name, duration = f"{name} {duration} at {rate}/min", _duration(life.hours, demand.limit)
+    if hours is not None:
+        rate = plain(life.revolutions / hours / MINUTES, DIGITS)
+        name, duration = f"{name} {duration} at {rate}/min", _duration(hours, demand.limit)
     error = "" if duration.startswith(">") else with_error(demand.value, demand.error)
     needed = ""
     if demand.limit is not None:
@@ -157,17 +157,20 @@ def _life_sentence(life: BearingLife | PairLife, demand: Demand, turns: bool) ->
         elif demand.outcome == 1:
             outcome = "about as long"
         needed = f", {plain(demand.limit, DIGITS)} h required: {outcome}"
-    return f"Lives {duration}{error} ({name}; {basis}){needed}{_alone(life, turns, demand.limit)}."
+    return f"Lives {duration}{error} ({name}; {basis}){needed}{_alone(life, hours, demand.limit)}."
 
 
-def _alone(life: BearingLife | PairLife, turns: bool, limit: float | None) -> str:
+def _alone(life: BearingLife | PairLife, hours: float | None, limit: float | None) -> str:
     """Return the lives of both bearings of a pair alone, the shorter one first."""
     if not life._of:
         return ""
     lives = {name: getattr(life, name) for name in ("first", "second")}
-    hours = life.hours / life.revolutions if turns else math.nan
     words = {
-        name: _duration(number * hours, limit) if turns else _revolutions(number)
+        name: (
+            _revolutions(number)
+            if hours is None
+            else _duration(number * hours / life.revolutions, limit)
+        )
         for name, number in sorted(lives.items(), key=lambda row: row[1])
     }
     if len({*words.values()}) == 1:

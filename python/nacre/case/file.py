@@ -202,9 +202,9 @@ class Case:
     def __call__(self, **values: object) -> dict[str, Any]:
         """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
         data = self.data
-        for key, value in values.items():
-            self._check_key(key)
-            data = core.with_value(data, key, value)
+        # A material is changed by its name before it is changed in one place alone.
+        for key in sorted(values, key=lambda key: not key.startswith("materials.")):
+            data = core.with_value(self._with_key(data, key), key, values[key])
         return Case(data, self.name, self.folder).arguments()
 
     @property
@@ -223,7 +223,7 @@ class Case:
         if "store" in self.arguments():  # the case as it stands must be one
             raise CaseError(f"{self.name}: wear.store: must not be given beside a study")
         for key in sweep.parameters:
-            self._check_key(key)
+            self._with_key(self.data, key)
             if (
                 not key.startswith(self._table.solved)
                 or key.startswith("bearing.film.")
@@ -283,13 +283,19 @@ class Case:
             )
         return path
 
-    def _check_key(self, key: str) -> None:
-        """Raise an error unless the case has a value at a key.
+    def _with_key(self, data: dict[str, Any], key: str) -> dict[str, Any]:
+        """Return tables of the case that have a value at a key, or raise an error.
 
-        A layer is named by its number, ``body.layers[0]`` or ``body.layers.0``, or by its name.
+        A layer is named by its number, ``body.layers[0]`` or ``body.layers.0``, or by its name. A
+        body whose material has a name gets its own copy where the key is a number of the material.
         """
+        place = key.rpartition(".")[0]
         try:
-            core.at(self.data, key)
+            if place.endswith(MATERIALS) and isinstance(name := core.at(data, place), str):
+                material = data.get("materials", {}).get(name)
+                data = core.with_value(data, place, copy.deepcopy(material))
+            core.at(data, key)
+            return data
         except LookupError as error:
             solved_tables = {t: self.data[t] for t in self._table.solved if t in self.data}
             keys = ", ".join(nearest(key, [path for path, _ in core.numbers(solved_tables)])[:3])

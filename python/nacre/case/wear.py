@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 import nacre
+from nacre._tools.paths import by_layer
 from nacre.case.friction import SHARED
 from nacre.case.tables import Count, Number, Numbers, Table, from_signature, with_words
 
@@ -65,6 +66,7 @@ def rates(rate: float | Mapping[str, float], names: Sequence[Sequence[str]]) -> 
         return rate
     if not names:
         raise ValueError("must be a number, as the shape is rigid without a counterbody")
+    rate = {str(key): value for key, value in by_layer(rate).items()}
     known = list(dict.fromkeys(name for aliases in names for name in aliases))
     if unknown := [key for key in rate if key not in known]:
         raise ValueError(f"must have keys among {', '.join(known)}, got {unknown[0]!r}")

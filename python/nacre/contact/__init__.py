@@ -343,9 +343,9 @@ def roll(
         axis with a number is found.
     spin : float, optional
         Relative angular velocity about the z axis over the speed of rolling [1/m].
-    direction : {"+x", "-x", "+y", "-y"}, optional
-        Direction of rolling, in which the leading edge lies; "+y" for shapes that roll across the
-        x axis, as rollers do. Other shapes need it.
+    direction : {"+x", "-x", "+y", "-y"} or tuple of float, optional
+        Direction of rolling along an axis, in which the leading edge lies; "+y" for shapes that
+        roll across the x axis, as rollers do. Other shapes need it.
     cells : int, optional
         Number of cells to roll from `initial` on, or from the first touch. By default the steady
         state is found.

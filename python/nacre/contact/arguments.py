@@ -15,12 +15,11 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import Group, keyword
-from nacre._tools.typing import Algorithm, Along, Body, Matrix
+from nacre._tools.typing import Algorithm, Along, Body, Direction, Matrix, along_axis
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
 from nacre.hertz import Line
 
-RollingDirection = Literal["+x", "-x", "+y", "-y"]
 WIDTHS = 3.0
 """Half-widths of Hertz across a grid that holds a line contact, which takes two of them."""
 Progress = Callable[[Report], object]
@@ -135,7 +134,7 @@ class Rolling(Group):
     creepage: Along | None = keyword()
     force: Along | None = keyword("N", line="N/m")
     spin: float = keyword("1/m", default=0.0)
-    direction: RollingDirection | None = keyword()
+    direction: Direction | None = keyword()
     cells: int | None = keyword()
     order: Literal[1, 2] = keyword(default=2)
 
@@ -145,8 +144,9 @@ class Rolling(Group):
         return super().of(keywords, Motion.of(keywords), *carried)
 
     def __post_init__(self) -> None:
-        """Raise a `TypeError` if the friction is a truth value."""
+        """Name the axis of the direction; a friction that is a truth value is a `TypeError`."""
         _check_friction(self.friction)
+        object.__setattr__(self, "direction", along_axis(self.direction))
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +215,7 @@ class RollKeywords(FrictionKeywords, total=False):
 
     creepage: Along | None
     spin: float
-    direction: RollingDirection | None
+    direction: Direction | None
     order: Literal[1, 2]
 
 

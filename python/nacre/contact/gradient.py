@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import nacre._core as core
-from nacre._tools.typing import Field, Pair
+from nacre._tools.paths import LAYER, numbered, numbers
+from nacre._tools.renamed import warn_of
+from nacre._tools.typing import Field, Pair, components
 from nacre.results import display
 from nacre.results.base import Fields, same
 
@@ -26,7 +28,7 @@ WORDS: dict[str, object] = {
     "load": "load",
     "moment[0]": {"moment": 0},
     "moment[1]": {"moment": 1},
-    "located_peak": "located_peak",
+    "peak_pressure": "located_peak",
     "cell_peak": "cell_peak",
     "participation_area": "participation_area",
     "area_estimate": "area_estimate",
@@ -53,12 +55,13 @@ the largest of 1e5 values by at most 6 % of it."""
 def described(output: Output) -> tuple[str, object]:
     """Return the name of an output, and the word or dict by which Rust knows it."""
     if isinstance(output, str):
+        if output == "located_peak":
+            warn_of('"located_peak"', '"peak_pressure"')
+            output = "peak_pressure"
         if output not in WORDS:
-            # The pressure of a cell is no smooth function of what moves the peak between cells.
-            hint = '; take "located_peak" for the peak' if output == "peak_pressure" else ""
             raise ValueError(
                 f"output must be {_quoted(WORDS)}, a pair such as "
-                f'("pressure_norm", 8.0), or a dict of a stress, got "{output}"{hint}'
+                f'("pressure_norm", 8.0), or a dict of a stress, got "{output}"'
             )
         return output, WORDS[output]
     if isinstance(output, dict):
@@ -108,13 +111,13 @@ def _stress(table: Mapping[str, object]) -> tuple[str, object]:
         number = _count(key, where)
         interface = {"interface": number, "side": side}
         name, place = f"{word} at interface {number}", {"interface": interface | sharp}
-    direction = table.get("direction")
+    direction: Any = table.get("direction")
     stress = {
         "member": table.get("body", "body"),
         "measure": MEASURES[word],
         "place": place,
         "friction": core.real("friction", table.get("friction", 0.0)),
-        "direction": None if direction is None else _numbers("direction", direction, 2),
+        "direction": None if direction is None else _numbers("direction", components(direction), 2),
     }
     return name, {"stress": stress}
 
@@ -145,7 +148,7 @@ def _numbers(name: str, values: object, count: int) -> list[float]:
 class MethodCall:
     """The call of a method of `Solution` that makes a value, for pickles."""
 
-    solution: object
+    solution: Solution
     method: str
     arguments: tuple[object, ...]
     keywords: dict[str, object]
@@ -224,13 +227,16 @@ class Gradient(Fields):
     def __getitem__(self, path: str) -> float:
         """Return the derivative with respect to a parameter."""
         try:
-            return self._values[path]
+            return self._values[self._numbered(path)]
         except KeyError:
             raise KeyError(f'"{path}" is none of {", ".join(self._values)}') from None
 
     def __contains__(self, path: object) -> bool:
         """Return whether there is a derivative with respect to a parameter."""
-        return path in self._values
+        return isinstance(path, str) and self._numbered(path) in self._values
+
+    def _numbered(self, path: str) -> str:
+        return in_numbers(self._call.solution, [path])[0]
 
     def __len__(self) -> int:
         """Return the number of parameters."""
@@ -339,7 +345,8 @@ def gradients(
         Tolerance.
     """
     linear, keywords = linearisation(solution, shape, tolerance)
-    derivatives = linear.gradients([output for _, output in named_outputs], wrt)
+    paths = None if wrt is None else differentiable(solution, wrt)
+    derivatives = linear.gradients([output for _, output in named_outputs], paths)
     return [
         Gradient(
             name,
@@ -355,6 +362,23 @@ def gradients(
             outputs, named_outputs, derivatives, strict=True
         )
     ]
+
+
+def in_numbers(solution: Solution, paths: Iterable[str]) -> list[str]:
+    """Return paths with the numbers of layers in place of their names."""
+    report = solution.report
+    return numbered({"body": report.body, "counterbody": report.counterbody}, paths)
+
+
+def differentiable(solution: Solution, paths: Iterable[str]) -> list[str]:
+    """Return paths of numbers in the terms of Rust; those in bodies must be there."""
+    found = in_numbers(solution, paths)
+    report = solution.report
+    known = numbers({"body": report.body, "counterbody": report.counterbody})
+    for path in found:
+        if isinstance(path, str) and LAYER.match(path) and path not in known:
+            raise ValueError(f"{path} has no derivative: the bodies have {', '.join(known)}")
+    return found
 
 
 def linearisation(

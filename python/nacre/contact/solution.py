@@ -25,6 +25,7 @@ from nacre.contact.gradient import (
     MethodCall,
     Output,
     described,
+    differentiable,
     gradients,
     linearisation,
 )
@@ -377,7 +378,7 @@ class Solution(NormalContact, Shown, Result):
         ----------
         output : str, tuple, dict or list
             ``"approach"``, ``"tilt[0]"``, ``"tilt[1]"``, ``"load"``, ``"moment[0]"``,
-            ``"moment[1]"``, ``"located_peak"``, ``"cell_peak"``, ``"participation_area"`` or
+            ``"moment[1]"``, ``"peak_pressure"``, ``"cell_peak"``, ``"participation_area"`` or
             ``"area_estimate"``; ``("pressure_norm", r)``, ``("pressure", (x, y))``,
             ``("displacement", (x, y))`` or ``("gap", (x, y))``; a dict of a stress, with
             ``stress`` (``"xx"`` to ``"xz"``, ``"von_mises"``, ``"principal[0]"``,
@@ -408,7 +409,7 @@ class Solution(NormalContact, Shown, Result):
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
         >>> ball = nacre.Sphere(5e-3)
         >>> solution = nacre.solve(ball, steel, load=10.0)
-        >>> peak = solution.gradient("located_peak")
+        >>> peak = solution.gradient("peak_pressure")
         >>> round(peak["shape.radius"] * 5e-3 / peak.value, 2)  # p0 ~ R^(-2/3)
         -0.67
         """
@@ -460,7 +461,9 @@ class Solution(NormalContact, Shown, Result):
         if not isinstance(directions, dict | None):
             raise TypeError("directions must be a dict of paths and their rates")
         linear, keywords = linearisation(self, shape, tolerance)
-        change = linear.jvp(list((directions or {}).items()), gap)
+        rates = directions or {}
+        paths = differentiable(self, rates)
+        change = linear.jvp(list(zip(paths, rates.values(), strict=True)), gap)
         return Direction(*change, MethodCall(self, "jvp", (directions, gap), keywords))
 
     def vjp(

@@ -14,8 +14,9 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.groups import names_itself, with_units
 from nacre._tools.notices import warn
+from nacre._tools.paths import by_layer
 from nacre._tools.progress import lasting
-from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
+from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among, components
 from nacre._tools.units import rounded, written
 from nacre.cards import Limits, materials, names_of, numbers_of
 from nacre.contact import plausible
@@ -80,7 +81,7 @@ LARGEST_CONTACT = 0.5
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 UNFINISHED = "stopped before all depths were done"
-REFINED = 0.01
+REFINED = 0.05
 """Largest estimated error of extremes where `refine` is True."""
 AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
@@ -92,7 +93,7 @@ class StressOptions:
 
     body: Member
     friction: float
-    direction: Direction | None
+    direction: Pair | None
     residual: ByLayer | None
     threads: int | None
     progress: Progress | None
@@ -710,7 +711,9 @@ class StressPlan:
         True
         """
         fields = StressFields(side, x, y, displacement)
-        options = StressOptions(self._member, friction, direction, residual, None, progress)
+        options = StressOptions(
+            self._member, friction, components(direction), by_layer(residual), None, progress
+        )
         return _warned(Stress(**core.stress(self._plan, z, fields, options)))
 
     def summary(
@@ -754,7 +757,9 @@ class StressPlan:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        options = StressOptions(self._member, friction, direction, residual, None, progress)
+        options = StressOptions(
+            self._member, friction, components(direction), by_layer(residual), None, progress
+        )
         limits = yield_stress, strength, bond_strength, None
         return _warned(self._solution._summary(self._plan, options, *limits))
 
@@ -820,8 +825,9 @@ class Stressed:
         friction : float, optional
             Coefficient of friction: adds the traction ``friction * pressure``. It must be 0 where
             the tractions are known, of `nacre.slide` and `nacre.roll`.
-        direction : tuple of float, optional
-            Direction ``(x, y)`` of the traction on the body, of any length; the traction on the
+        direction : tuple of float or str, optional
+            Direction ``(x, y)`` of the traction on the body, of any length, or ``"+x"`` to
+            ``"-y"``; the traction on the
             counterbody is opposite. By default the direction in which the shape rolls,
             `Report.rolling_direction`: across the axis of a roller or cylinder, and across the
             strips of a line contact; x below a body of revolution that is pressed on its axis, as
@@ -871,7 +877,9 @@ class Stressed:
         (True, False)
         """
         fields = StressFields(side, x, y, displacement)
-        options = StressOptions(body, friction, direction, residual, threads, progress)
+        options = StressOptions(
+            body, friction, components(direction), by_layer(residual), threads, progress
+        )
         return _warned(Stress(**core.stress(self._solved, z, fields, options)))
 
     @names_itself
@@ -911,7 +919,7 @@ class Stressed:
             ``{0: (shear, tension)}`` by number, or the name of the layer above. One of them may be
             None.
         refine : bool or float, optional
-            Largest estimated error of the extremes, as a part of them, such as 0.05; True is 0.01.
+            Largest estimated error of the extremes, as a part of them, such as 0.01; True is 0.05.
             Patches that hold the places where value and error together exceed an extreme by more
             are solved again on finer cells, until the error is below it or a patch has as many
             cells as the grid or 512 × 512, whichever is more. By default, and with False, the cells
@@ -952,7 +960,9 @@ class Stressed:
         True
         """
         error = (REFINED if refine else None) if isinstance(refine, bool) else refine
-        options = StressOptions(body, friction, direction, residual, threads, progress)
+        options = StressOptions(
+            body, friction, components(direction), by_layer(residual), threads, progress
+        )
         limits = yield_stress, strength, bond_strength, error
         return _warned(self._summary(self._solved, options, *limits))
 
@@ -966,7 +976,8 @@ class Stressed:
         refine: float | None,
     ) -> StressSummary:
         """Return the extremes in a body, of the contact or of a plan of it."""
-        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, refine)
+        yields = numbers_of(yield_stress, "yield_stress")
+        limits = StressLimits(yields, by_layer(strength), refine)
         member = _check_limits_of(self, options.body, limits)
         contact = {"bond_strength": _bond_strengths(self, options.body, bond_strength)}
         with lasting("stresses", options.progress) as tell:
@@ -1032,7 +1043,7 @@ class Stressed:
         return summary.verdict()
 
     def _sliding(
-        self, friction: float, direction: Direction | None, body: Member
+        self, friction: float, direction: Pair | None, body: Member
     ) -> tuple[float, float]:
         """Return the traction on a body over the pressure, of arguments that were accepted."""
         if friction == 0:
@@ -1138,7 +1149,9 @@ def stress(
     True
     """
     fields = StressFields(side, x, y, displacement)
-    options = StressOptions("body", friction, direction, residual, threads, progress)
+    options = StressOptions(
+        "body", friction, components(direction), by_layer(residual), threads, progress
+    )
     return Stress(**core.stress_under(body, grid, pressure, z, fields, options))
 
 
@@ -1308,7 +1321,7 @@ def _bond_strengths(
     body = report.counterbody if among(member, ("counterbody",)) else report.body
     layers = body.layers if isinstance(body, core.HalfSpace) else ()
     given: dict[Any, Any] = (
-        dict(bonds) if isinstance(bonds, Mapping) else dict.fromkeys(range(len(layers)), bonds)
+        by_layer(bonds) if isinstance(bonds, Mapping) else dict.fromkeys(range(len(layers)), bonds)
     )
     strengths: list[Bond | None] = []
     for k, layer in enumerate(layers):

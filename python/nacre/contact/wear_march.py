@@ -20,6 +20,7 @@ import nacre._core as core
 from nacre._tools.disk import check_folder
 from nacre._tools.groups import Group, keyword
 from nacre._tools.notices import warn
+from nacre._tools.paths import by_layer
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import AnyPath, Body, Matrix
 from nacre._tools.units import symbol, system
@@ -339,17 +340,17 @@ def rates(name: str, rate: Any, body: Body | None) -> list[float]:
         return [core.real(name, rate)]
     if not isinstance(body, core.HalfSpace):
         raise ValueError(f"{name} must be a number for a body without layers, got {rate!r}")
-    by_layer: Any = core.layer_values(body, name, rate)
+    values: Any = core.layer_values(body, name, by_layer(rate))
     count = len(body.layers) + 1
-    by_layer = [*by_layer, *[None] * (count - len(by_layer))]
+    values = [*values, *[None] * (count - len(values))]
     names = [*layer_names(body), "substrate"]
     elastic = not isinstance(body.substrate, core.Rigid | core.Free)
-    missing = [layer for layer, value in zip(names, by_layer, strict=True) if value is None]
+    missing = [layer for layer, value in zip(names, values, strict=True) if value is None]
     if not elastic and missing == ["substrate"]:
-        by_layer[-1], missing = 0.0, []
+        values[-1], missing = 0.0, []
     if missing:
         raise ValueError(f"{name} must hold a rate for {', '.join(missing)}, got {rate!r}")
-    return [float(value) for value in by_layer]
+    return [float(value) for value in values]
 
 
 def wear_history(

@@ -61,10 +61,11 @@ def coating_chart(
     friction
         Coefficient of friction of sliding.
     direction
-        Direction ``(x, y)`` of the traction on the coating. By default that of `Solution.stress`;
-        for shapes without one it must be given where `friction` is above 0.
+        Direction of the traction on the coating, ``(x, y)`` or ``"+x"`` to ``"-y"``. By default
+        that of `Solution.stress`; for shapes without one it must be given where `friction` is above
+        0.
     refine
-        Largest estimated error of a stress, as a fraction of it, True for 0.01:
+        Largest estimated error of a stress, as a fraction of it, True for 0.05:
         `Solution.stress_summary` then solves finer cells around the most loaded places, which can
         take several times as long. None keeps the cells of the grid, as do contacts that cannot be
         refined: periodic ones and those with a hardness or given coefficients.

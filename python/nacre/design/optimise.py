@@ -246,7 +246,7 @@ def optimise(
     >>> best = design.optimise(
     ...     {"shape": nacre.Sphere(5e-3), "body": steel},
     ...     {"shape.radius": 5e-3},
-    ...     objective="located_peak",
+    ...     objective="peak_pressure",
     ...     cases=[{"load": 10.0}],
     ...     bounds={"shape.radius": (1e-3, 8e-3)},
     ...     grid=nacre.Grid((32, 32), (3e-4, 3e-4)),

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.rounding import ceil, floor
-from nacre._tools.typing import Direction, Member, Side
+from nacre._tools.typing import Direction, Member, Pair, Side, components
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import (
@@ -55,7 +55,7 @@ class Level(NamedTuple):
 
     grid: core.Grid
     pressure: core.StressPlan
-    tractions: list[tuple[core.StressPlan, Direction]]
+    tractions: list[tuple[core.StressPlan, Pair]]
     """Tractions as pressures, whose friction acts along these directions."""
     used: npt.NDArray[np.intp]
     """Numbers of the cells along y that belong to the history."""
@@ -110,7 +110,9 @@ class Rolling:
         self.sign = -1.0 if body == "counterbody" else 1.0
         self.threads = None if threads is None else core.integer("threads", threads)
         rolls = (0.0, 1.0)
-        x_part, y_part = rolls if direction is None else core.vector("direction", 2, direction)
+        x_part, y_part = (
+            rolls if direction is None else core.vector("direction", 2, components(direction))
+        )
         self.direction = core.real("direction", x_part), core.real("direction", y_part)
         self.along = self.sign * self.direction[0], self.sign * self.direction[1]
         """Direction of the friction on the body."""
@@ -246,7 +248,7 @@ class Rolling:
     def _far_states(self, level: Level, depths: Sequence[float], side: Side, slide: float) -> Array:
         """Return the states on a wider grid, whose loads are uniform over cells."""
 
-        def stress(plan: core.StressPlan, friction: float, way: Direction) -> Array:
+        def stress(plan: core.StressPlan, friction: float, way: Pair) -> Array:
             fields = StressFields(side, self.x, None, displacement=False)
             options = StressOptions("body", friction, way, None, None, None)
             return self._array(Stress(**core.stress(plan, depths, fields, options)))

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import keyword_units, with_units
+from nacre._tools.paths import by_layer
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre._tools.units import printable, written
@@ -738,7 +739,7 @@ def layer_values(
     count = len(body.layers) + isinstance(body.substrate, core.Elastic)
     if np.ndim(stress) == 0 and not isinstance(stress, Mapping | None):  # type: ignore[arg-type]
         return [core.real(name, stress)] * count
-    per_layer: list[float | None] = core.layer_values(body, name, stress)
+    per_layer: list[float | None] = core.layer_values(body, name, by_layer(stress))
     return per_layer + [None] * (count - len(per_layer))
 
 
@@ -817,8 +818,9 @@ def assess(
     friction : float, optional
         Coefficient of friction: adds the traction ``friction * pressure``. It must be 0 where the
         tractions are known, of `nacre.slide` and `nacre.roll`.
-    direction : tuple of float, optional
-        Direction ``(x, y)`` of the traction on the body; by default along y.
+    direction : tuple of float or str, optional
+        Direction of the traction on the body, ``(x, y)`` or ``"+x"`` to ``"-y"``; by default
+        along y.
     residual : dict or sequence, optional
         Residual stress [Pa], equal along x and y, that is added to every state of a layer, the
         unloaded one too; by layer as `shear_yield`.

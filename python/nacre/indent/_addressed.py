@@ -5,14 +5,16 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.paths import numbers
+from nacre._tools.paths import numbered, numbers
 from nacre.indent.solution import Indentation, IndentCurve
 
+Value = TypeVar("Value")
 Array = npt.NDArray[np.float64]
 
 INCOMPRESSIBLE = 0.4999
@@ -47,6 +49,10 @@ class System:
         parameters = numbers(vars(self)) | {"tip.area": 1.0}
         indentation = core.Indentation(self.body, self.tip, self.counterbody, self.adhesion)
         return {k: parameters[k] for k in indentation.parameters() if k != "adhesion.strength"}
+
+    def by_number(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Return values by path with the numbers of layers in place of their names."""
+        return dict(zip(numbered(vars(self), values), values.values(), strict=True))
 
     def held(self, free: Sequence[str]) -> dict[str, float]:
         """Return what a fit with these free parameters holds, and of which estimates have a slope.

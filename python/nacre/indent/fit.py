@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.paths import numbered
 from nacre._tools.progress import lasting
 from nacre._tools.typing import among
 from nacre.indent._addressed import System
@@ -162,7 +163,9 @@ def fit(
     curves = _curves(data)
     _check_arguments(noise, sigma, nuisance)
     system = System.of(body, tip, counterbody, adhesion)
-    known = _checked_known(known or {}, system, free)
+    free = free if isinstance(free, str) else numbered(vars(system), free)
+    known = _checked_known(system.by_number(known or {}), system, free)
+    starts = starts and [system.by_number(start) for start in starts]
     system = system.with_values({name: value for name, (value, _) in known.items()})
     doubts = _doubts(curves, system)
     for text in doubts:
@@ -177,8 +180,8 @@ def fit(
             noise=noise,
             floor=floor,
             sigma=sigma,
-            prior=prior or {},
-            bounds=bounds or {},
+            prior=system.by_number(prior or {}),
+            bounds=system.by_number(bounds or {}),
         )
 
     model = new_model("absolute" if noise == "auto" else noise)

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import with_units
+from nacre._tools.paths import numbered
 from nacre._tools.progress import check_progress
 from nacre._tools.typing import Field, Layers, Matrix, Vector, among
 from nacre._tools.units import written
@@ -310,7 +311,10 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         """
         states = self._states
         paths = states.parameters() if wrt is None else wrt
-        return {path: StateDerivative(*states.derivatives(path), states, path) for path in paths}
+        return {
+            path: StateDerivative(*states.derivatives(number), states, number)
+            for path, number in zip(paths, self.indentation._numbered(paths), strict=True)
+        }
 
     @cached_property
     def _pulled(self) -> dict[str, float]:
@@ -726,10 +730,14 @@ class Indentation:
             If the adhesion is Maugis's, the largest approach needs too large a contact, or a
             contact is a ring.
         """
-        curve = IndentCurve(*self._planned.curve(approach, wrt))
+        curve = IndentCurve(*self._planned.curve(approach, self._numbered(wrt)))
         for message in curve.warnings:
             warnings.warn(message, core.NacreWarning, stacklevel=2)
         return curve
+
+    def _numbered(self, paths: Sequence[str]) -> list[str]:
+        """Return paths with the numbers of layers in place of their names."""
+        return numbered({"body": self.body, "counterbody": self.counterbody}, paths)
 
     def pull_off(self, control: Control = "load") -> PullOff:
         """Last stable state of the tip as it is pulled off under a given load or approach.

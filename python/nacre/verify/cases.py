@@ -325,7 +325,7 @@ def _masta() -> Numbers:
         axis, word = (0, "radial") if force[2] is None else (2, "axial")
         place = f"{word} load, clearance {clearance * 1e6:g} µm"
         numbers[f"displacement [µm], {place}"] = solution.displacement[axis] * 1e6
-        numbers[f"L_10r [1e6], {place}"] = solution.life().l10
+        numbers[f"L_10r [1e6], {place}"] = solution.life().l10r
     return numbers
 
 

@@ -65,7 +65,7 @@ OIL: dict[str, Any] = {"kinematic_viscosity": 20e-6, "contamination": 0.8}
 def over_basic(life: BearingLife) -> float:
     """Return the reference life over the basic one."""
     assert life.basic_life is not None
-    return life.l10 / life.basic_life
+    return life.l10r / life.basic_life
 
 
 def turning(bearing: Any, load: float, axial: float | None = None, per_minute: float = 3000) -> Any:

@@ -90,7 +90,7 @@ def test_contacts_are_those_that_were_solved(coated: BearingSolution) -> None:
     assert coated.lamina_loads is not None
     assert_close(coated.lamina_loads.sum(-1), coated.loads, rtol=1e-12)
     # Gradients of one contact stay available.
-    assert contact.gradient("located_peak", ["approach"])["approach"] > 0
+    assert contact.gradient("peak_pressure", ["approach"])["approach"] > 0
 
 
 def test_pressure_leans_towards_the_tilt(coated: BearingSolution) -> None:

@@ -277,7 +277,7 @@ def test_other_units_are_printed(tmp_path: Path, capsys: Capture) -> None:
     blocks = np.array([[1e-3] * 3 + [1.0] * 2] * 3 + [[1.0] * 3 + [1e3] * 2] * 2)
     largest = np.abs(other["tangent"]).max()
     assert_close(other["tangent"], blocks * one["tangent"], rtol=1e-8, atol=1e-9 * largest)
-    for name in ("l10", "revolutions", "equivalent_load", "capacity"):
+    for name in ("l10r", "revolutions", "equivalent_load", "capacity"):
         assert other["life"][name] == pytest.approx(one["life"][name], rel=1e-8)
     assert other["bearing"]["DeepGrooveBall"]["diameter"] == pytest.approx(11.5, rel=1e-15)
     assert other["bearing"]["DeepGrooveBall"]["element"]["Elastic"]["young"] == 210e3
@@ -317,7 +317,7 @@ def test_case_is_solved_saved_loaded_drawn_and_swept(tmp_path: Path, capsys: Cap
     assert command("solve", path, "--json") == 0
     told = json.loads(capsys.readouterr().out)
     assert_close(told["loads"], solution.loads, rtol=1e-12)
-    assert told["life"]["l10"] == pytest.approx(solution.life("pressure").l10)
+    assert told["life"]["l10r"] == pytest.approx(solution.life("pressure").l10r)
     contact = solution.contact(int(solution.loads[:, 0].argmax()), "inner")
     assert contact is not None
     film = film_thickness(

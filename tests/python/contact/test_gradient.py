@@ -56,7 +56,7 @@ def test_the_field_of_the_gap_is_read_only_and_sums_to_one(solution: nacre.Solut
 
 
 def test_derivatives_equal_differences_within_the_valid_step(solution: nacre.Solution) -> None:
-    gradient = solution.gradient("located_peak", tolerance=1e-11)
+    gradient = solution.gradient("peak_pressure", tolerance=1e-11)
     steps = gradient.valid_step
     assert list(steps) == list(gradient)
     step = min(0.3 * steps["load"], 1e-3)
@@ -64,7 +64,7 @@ def test_derivatives_equal_differences_within_the_valid_step(solution: nacre.Sol
 
     def peak(load: float) -> float:
         moved = nacre.solve(BALL, COATED, STEEL, load=load, **keywords)
-        return moved.gradient("located_peak", []).value
+        return moved.gradient("peak_pressure", []).value
 
     difference = (peak(5.0 + step) - peak(5.0 - step)) / (2.0 * step)
     assert gradient["load"] == pytest.approx(difference, rel=1e-5)

@@ -96,7 +96,7 @@ VALUES = MADE_BY_A_CALL | {
         [0.0, 1e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
     ),
     "stress plan": SOLUTION.stress_plan(threads=1),
-    "gradient": SOLUTION.gradient("located_peak"),
+    "gradient": SOLUTION.gradient("peak_pressure"),
     "weighted gradient": SOLUTION.vjp(np.ones((48, 50)), ["load"]),
     "direction": SOLUTION.jvp({"load": 1.0}),
     "card": nacre.materials["TiN"],
@@ -209,7 +209,7 @@ STATES = json.loads((DATA / "states_0_1_0.json").read_text(encoding="utf-8"))["s
 """States that version 0.1.0 wrote, before its release."""
 STORED: dict[str, tuple[Callable[[Any], object], tuple[Any, ...]]] = {
     "creep_coefficients": (lambda one: one.c11, ("c11",)),
-    "life": (lambda one: one.l10, ("revolutions",)),  # those of L_10r, in millions
+    "life": (lambda one: one.l10r, ("revolutions",)),  # those of L_10r, in millions
     "one": (lambda one: one.radius, ("radius",)),
     "maugis": (lambda one: one.outer_radius, ("outer_radius",)),
     "volume": (lambda one: one.integral, ("integral",)),
