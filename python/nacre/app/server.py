@@ -122,7 +122,7 @@ class Server(ThreadingHTTPServer):
         try:
             case = card.case(question["values"])
             with self.lane(stage == "draft", going):
-                return answer(case, stage, going, card.measured)
+                return answer(case, stage, going, card.measured, card.shown)
         except FieldError as error:
             return {"error": str(error), "field": error.path}
         except (LookupError, ValueError) as error:
