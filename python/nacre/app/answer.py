@@ -120,6 +120,8 @@ DIGITS = 5
 """Digits of the main number."""
 PRESSURE, DEPTH = Axis("pressure", "Pa"), Axis("depth", "m")
 """Axes of pictures."""
+LINE_WIDTH = 1.6 / 230
+"""Width of a curve over the height of its picture."""
 HEAVIEST = "Pressure along the heaviest element, inner ring."
 """Caption of the first picture of a bearing."""
 ERRORS = (ArithmeticError, LookupError, MemoryError, RuntimeError, TypeError, ValueError)
@@ -562,7 +564,18 @@ def _pressures(**contacts: Contact | StressPlan | None) -> str:
         name: section(contact._normal, axis, getattr(contact, "edge", NO_EDGE))
         for name, contact in drawn.items()
     }
-    return _drawn("Pressure through the largest.", Axis("xy"[axis], "m"), PRESSURE, curves)
+    places = Axis("xy"[axis], "m")
+    caption = f"Pressure along {places.name} through its largest value"
+    (name, (x, pressure)), *others = curves.items()
+    if len(others) == 1:
+        other, (beside, second) = others[0]
+        difference = pressure - np.interp(x, beside, second)
+        if np.abs(difference).max() < LINE_WIDTH * pressure.max():
+            alone = _drawn(f"{caption}, {name}.", places, PRESSURE, {name: curves[name]})
+            words = f"Pressure, {name} less {other}: no line's width of the pressure itself."
+            axis_of = Axis("difference", "Pa")
+            return alone + _drawn(words, places, axis_of, {name: (x, difference)})
+    return _drawn(f"{caption}.", places, PRESSURE, curves)
 
 
 def _profile(solution: BearingSolution) -> tuple[Field, Field]:
