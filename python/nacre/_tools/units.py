@@ -9,8 +9,8 @@ import math
 import re
 import sys
 import threading
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from decimal import Decimal
@@ -278,6 +278,25 @@ def _hold(units: System) -> None:
         _thread.system = units
 
 
+_chosen: ContextVar[Mapping[str, str]] = ContextVar("units of numbers by dimension", default={})
+"""Units in which numbers are printed, by their SI units, in place of those that are readable."""
+
+
+@contextmanager
+def chosen(units: Mapping[str, str]) -> Iterator[None]:
+    """Print numbers in some units, by their SI units, within the context, whatever their size.
+
+    >>> with chosen({"Pa": "GPa"}):
+    ...     written(7.19e6, "Pa")
+    '0.00719 GPa'
+    """
+    token = _chosen.set(units)
+    try:
+        yield
+    finally:
+        _chosen.reset(token)
+
+
 class Within:
     """A context in which units are set: the earlier ones are restored at its end."""
 
@@ -416,6 +435,10 @@ class Scale:
             or dimension.startswith(("1", "kg", "m²/N"))
         ):
             return cls(1.0, own)  # nobody writes k1/m, kkg or nm²/N
+        if (unit_chosen := _chosen.get().get(dimension)) is not None:
+            known = size_of(unit_chosen)
+            assert known is not None
+            return cls(size / known[1], unit_chosen)
         # A prefix has the power of the unit behind it: mm² are 1e-6 m², mJ/m² are 1e-3 J/m².
         power = POWERS[FACTORS.findall(dimension)[0][2]]
         low, high = (bound**power for bound in READABLE)

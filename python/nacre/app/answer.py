@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import functools
 import html
+import math
 import pickle
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -18,6 +19,7 @@ import numpy as np
 import nacre
 import nacre._core as core
 from nacre._tools.typing import Field, Member
+from nacre._tools.units import chosen, plain, rounded
 from nacre.bearing import BearingSolution, PairSolution
 from nacre.bearing.kinds import RollerBearing
 from nacre.case import Case, CaseError, toml
@@ -72,6 +74,7 @@ RECENT = 4
 EVERY = 3
 """Loads of which one is in a draft of an indentation."""
 CONTACT_ROWS = {"load", "approach", "tilt", "peak_pressure", "contact_extent", "contact_area"}
+CONTACT_ROWS |= {"force", "torque", "shift", "creepage", "spin"}
 BEARING_ROWS = {"displacement", "tilt", "largest_load", "peak_pressure", "edge_pressure", "loaded"}
 BEARING_ROWS |= {"first_bearing", "second_bearing"}
 FILM_ROWS = {"central", "minimum", "film_ratio"}
@@ -84,6 +87,31 @@ INDENT_ROWS = {
     "central_pressure": "central pressure there",
 }
 """Numbers of an indentation that the page shows, of its largest depth."""
+LABELS = {
+    "hours": "life in hours",
+    "ring_capacities": "ratings of contacts",
+    "simple_fatigue_load_limit": "fatigue load limit by C_0 alone",
+    "first": "life of the first bearing",
+    "second": "life of the second bearing",
+}
+"""Labels that say more beside others than those of the result."""
+SILENT = {"ended"}
+"""Rows of a history that say nothing of its numbers."""
+PLACES = {
+    "displacement": ("along x", "along y", "along z"),
+    "tilt": ("along x", "along y"),
+    "force": ("along x", "along y"),
+    "creepage": ("along x", "along y"),
+    "rotation": ("about x", "about y"),
+    "ring_capacities": ("inner ring", "outer ring"),
+}
+"""Words for the components of quantities."""
+PASCALS = re.compile(r"\bby ([\d.e+-]+) Pa\b")
+"""An error of a stress in a warning, in the unit of the case."""
+MEMBER = re.compile(r"\b(layer|interface)s\[(\d+)\]")
+"""A layer or an interface by its number, which begins with 0."""
+EXPONENT = re.compile(r"\d[\d.]*e\+\d+")
+"""A large number."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
 """Extremes of stresses that the page shows."""
 LEVELS = ("bad", "unknown", "fair", "good")
@@ -92,6 +120,8 @@ DIGITS = 5
 """Digits of the main number."""
 PRESSURE, DEPTH = Axis("pressure", "Pa"), Axis("depth", "m")
 """Axes of pictures."""
+LINE_WIDTH = 1.6 / 230
+"""Width of a curve over the height of its picture."""
 HEAVIEST = "Pressure along the heaviest element, inner ring."
 """Caption of the first picture of a bearing."""
 ERRORS = (ArithmeticError, LookupError, MemoryError, RuntimeError, TypeError, ValueError)
@@ -129,7 +159,11 @@ class Stopped(Exception):
 
 
 def answer(
-    case: Case, stage: str, going: Going = lambda: True, measured: Measured = NONE
+    case: Case,
+    stage: str,
+    going: Going = lambda: True,
+    measured: Measured = NONE,
+    shown: Mapping[str, str] | None = None,
 ) -> Answer:
     """Return what the page shows of a case at a stage.
 
@@ -143,6 +177,8 @@ def answer(
         Function that says whether the answer is still wanted.
     measured
         What was read from files at the start.
+    shown
+        Units of the numbers by their SI units, in place of readable ones; a report has its own.
 
     Returns
     -------
@@ -171,7 +207,9 @@ def answer(
                 return {"case": file_text(case, measured)}
             if stage == "report":
                 return {"report": _report(case, arguments, wanted, measured)}
-            reply = SOLVERS[case.kind](case, arguments, stage, wanted)
+            with chosen(shown or {}):
+                reply = SOLVERS[case.kind](case, arguments, stage, wanted)
+                reply["parts"]["warnings"] = list(map(_with_unit, reply["parts"]["warnings"]))
     except ERRORS as error:
         wanted()
         return {"error": " ".join(str(error).split())[:600] or type(error).__name__}
@@ -301,9 +339,10 @@ def _bare(case: Case, arguments: Answer, wanted: Wanted) -> Contact | None:
 
 def _wear(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     """Return the answer on wear: the worn contact beside the new one, and the depth removed."""
-    if stage == "draft":
+    grid = arguments.get("grid")
+    if stage == "draft" and not (grid and grid.is_line):  # lines are fast enough as they are
         arguments = DRAFT | arguments
-        arguments |= {} if "grid" in arguments else {"max_cells": FEWEST_CELLS}
+        arguments |= {} if grid else {"max_cells": FEWEST_CELLS}
     try:
         history = nacre.wear(**arguments, progress=wanted)
     except nacre.ConvergenceError as error:
@@ -450,8 +489,49 @@ def _extremes(summary: nacre.types.StressSummary) -> list[Row]:
     return rows
 
 
+def _with_unit(warning: str) -> str:
+    """Return a warning whose stresses have the unit of the page."""
+    text = PASCALS.sub(lambda error: f"by {display.number(float(error[1]), 'Pa', 2)}", warning)
+    return MEMBER.sub(_member, text)
+
+
+def _member(match: re.Match[str]) -> str:
+    return f"{match[1]} {int(match[2]) + 1}"
+
+
+def _worded(row: Row, is_ring: bool) -> Row | None:
+    """Return a row in words, components with their names; None of one that says nothing.
+
+    The tilt of a ring is about an axis, that of a body a slope along it.
+    """
+    text, value = row.text, row.value
+    if row.key in SILENT or (isinstance(value, float) and not math.isfinite(value)):
+        return None
+    if row.key == "hours":
+        text = f"{plain(value, 4)} h"
+    elif row.key in PLACES:
+        words = PLACES["rotation" if is_ring and row.key == "tilt" else row.key]
+        parts = zip(value, words, strict=True)
+        text = ", ".join(f"{_component(row, part)} {place}" for part, place in parts if part)
+    text = EXPONENT.sub(lambda large: plain(float(large[0]), 4), MEMBER.sub(_member, text))
+    return row._replace(label=LABELS.get(row.key, row.label), text=text) if text else None
+
+
+def _component(row: Row, value: float) -> str:
+    """Return a component of a quantity, of a tilt in minutes, of a creepage in %."""
+    if row.key == "tilt":
+        return f"{rounded(math.degrees(math.atan(value)) * 60, 4)}′"
+    if row.key == "creepage":
+        return f"{rounded(100 * value, 4)} %"
+    return display.number(value, row.unit)
+
+
 def _table(rows: Rows, beside: Rows, about: str) -> str:
     """Return a table of numbers, those of a bare body beside them; its head says "about"."""
+    is_ring = any(row.key == "displacement" for row in rows)
+    rows, beside = (
+        [worded for row in each if (worded := _worded(row, is_ring))] for each in (rows, beside)
+    )
     lines, bare = [], {row.key: row.text for row in beside}
     for row in rows:
         cells = (row.text, bare.get(row.key, "")) if bare else (row.text,)
@@ -492,7 +572,18 @@ def _pressures(**contacts: Contact | StressPlan | None) -> str:
         name: section(contact._normal, axis, getattr(contact, "edge", NO_EDGE))
         for name, contact in drawn.items()
     }
-    return _drawn("Pressure through the largest.", Axis("xy"[axis], "m"), PRESSURE, curves)
+    places = Axis("xy"[axis], "m")
+    caption = f"Pressure along {places.name} through its largest value"
+    (name, (x, pressure)), *others = curves.items()
+    if len(others) == 1:
+        other, (beside, second) = others[0]
+        difference = pressure - np.interp(x, beside, second)
+        if np.abs(difference).max() < LINE_WIDTH * pressure.max():
+            alone = _drawn(f"{caption}, {name}.", places, PRESSURE, {name: curves[name]})
+            words = f"Pressure, {name} less {other}: no line's width of the pressure itself."
+            axis_of = Axis("difference", "Pa")
+            return alone + _drawn(words, places, axis_of, {name: (x, difference)})
+    return _drawn(f"{caption}.", places, PRESSURE, curves)
 
 
 def _profile(solution: BearingSolution) -> tuple[Field, Field]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import functools
 import math
 import tomllib
@@ -29,12 +30,13 @@ Data = dict[str, Any]
 FIRST = ("solve", "indent", "bearing", "body", "tip", "shape")
 """Tables whose numbers come first in a case of the command line."""
 MOST_FIELDS = 8
-"""Largest number of main fields."""
+"""Number of main fields of a case of the command line."""
 MOST = {"cells": 65_536, "layers": 20, "elements": 200, "steps": 200}
 """Largest numbers of cells, of layers, of rolling elements, and of steps or indentations."""
 LOADS = 60
 """Number of loads of an indentation, whose depths are evenly spaced."""
 CHOSEN = {"solve.max_cells", "bearing.solve.cells", "grid.cells", "grid.width", "counterbody.ends"}
+CHOSEN |= {f"{table}.{key}" for table in ("grid", "shape") for key in ("shape", "size")}
 """Numbers of cells, sizes and ends that cards choose."""
 STATIONS = {f"{table}.profile.{key}" for table in ("shape", "bearing") for key in ("x", "drop")}
 """Lists of a measured profile, whose numbers are no fields."""
@@ -42,10 +44,14 @@ IDLE = tuple(f".{key}" for keys in LIMITS.values() for key in keys)
 """Ends of the paths of limits, which act in some cases only."""
 BONDS = ("shear", "tension")
 """Limits of interfaces."""
-REQUIRED = {"wear": "wear.required_distance", "bearing": "bearing.life.required_life"}
+REQUIRED = {
+    "wear": ("wear.required_distance",),
+    "bearing": ("bearing.life.required_life", "bearing.solve.static_safety"),
+}
 """What has to be reached, by the table of the case."""
-MARGIN = 3.0
-"""Width of the grid of a line contact over that of the contact on the softest of its materials."""
+MARGIN, WORN = 3.0, 1.5
+"""Width of the grid of a line contact over that of the contact on the softest of its materials, and
+over that of the groove in which a coating is worn through."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +72,8 @@ class Card:
     """Fields of every other number."""
     measured: Measured = NONE
     """What was read from files at the start."""
+    shown: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    """Units in which numbers are shown, by their SI units: those in which they are typed."""
 
     @functools.cached_property
     def by_path(self) -> dict[str, Field]:
@@ -84,12 +92,12 @@ class Card:
         return Case(_with_names(data), self.name)
 
 
-def with_value(data: Data, field: Field, value: float | None) -> Data:
+def with_value(data: Data, field: Field, value: float | str | None) -> Data:
     """Return the data of a case with the value of a field, in the unit of the field."""
-    entry: float | list[float] | None = None
+    entry: float | str | list[float] | None = None
     if value is not None:
         entry = field.in_case(value, data.get("units", "SI"))
-        if field.path == "indent.load" and field.slides:
+        if field.path == "indent.load" and field.slides and isinstance(entry, float):
             entry = [tidy(entry * (k / LOADS) ** 1.5) for k in range(1, LOADS + 1)]
     return _with_entry(data, field.path, entry)
 
@@ -142,7 +150,7 @@ def _solvable_case(data: Data) -> Data:
     """Return a case of a template without adhesion of no work, with ends and a grid that hold it.
 
     A roller's body ends with it. The grid of a line is wide enough by Hertz's formula for the
-    softest material.
+    softest material, and for the groove in a coating that is worn through.
     """
     if data.get("adhesion", {}).get("work") == 0:
         return _with_entry(data, "adhesion", None)
@@ -157,6 +165,9 @@ def _solvable_case(data: Data) -> Data:
     )
     load, radius = data["solve"]["load"], data["shape"]["radius"]
     width = MARGIN * 2 * math.sqrt(4 * load * radius * 2 * compliance / math.pi)
+    if "wear" in data:
+        depth = sum(layer["thickness"] for layer in data["body"].get("layers", ()))
+        width += WORN * 2 * math.sqrt(2 * radius * depth)
     return _with_entry(data, "grid.width", float(f"{width:.3g}"))
 
 
@@ -192,23 +203,32 @@ def _tables(units: str) -> dict[str, Data]:
 @functools.cache
 def cards() -> dict[str, Card]:
     """Return the cards of the templates by name."""
-    text = (resources.files(__package__) / "cards.toml").read_text("utf-8")
-    table = tomllib.loads(text)
-    return {name: _card(name, entry, table["help"]) for name, entry in table["cards"].items()}
+    table = _texts()
+    return {name: _card(name, entry, table) for name, entry in table["cards"].items()}
 
 
-def _card(name: str, entry: Data, helps: Mapping[str, str]) -> Card:
+@functools.cache
+def _texts() -> dict[str, Any]:
+    """Return the descriptions of cards, and labels, units and helps of quantities."""
+    return tomllib.loads((resources.files(__package__) / "cards.toml").read_text("utf-8"))
+
+
+def _card(name: str, entry: Data, texts: Mapping[str, Any]) -> Card:
     """Return the card of a template, with other entries and without some."""
+    texts = {**texts, "shown": entry.get("shown", {})}
     data = tomllib.loads(templates.texts()[name])
     for path in entry.get("without", ()):
         data = _with_entry(data, path, None)
     for path, value in entry.get("changes", {}).items():
         data = _with_entry(data, path, value)
-    main = [field_of(data, helps=helps, **description) for description in entry["fields"]]
-    for field in main:
+    main, rest = (
+        [field_of(data, texts=texts, **description) for description in entry.get(fields, ())]
+        for fields in ("fields", "more")
+    )
+    for field in (*main, *rest):
         data = with_value(data, field, field.default)
-    more = _other_fields(data, CHOSEN | {field.path for field in main})
-    return Card(name, entry["group"], entry["title"], data, main, more)
+    more = _other_fields(data, CHOSEN | {field.path for field in (*main, *rest)}, texts)
+    return Card(name, entry["group"], entry["title"], data, main, [*rest, *more], NONE, texts["shown"])
 
 
 def own_card(path: AnyPath) -> Card:
@@ -235,19 +255,21 @@ def own_card(path: AnyPath) -> Card:
     if case.kind == "contact" and "fatigue" not in data:
         data.setdefault("stress", {})  # which the page shows
     check_size(data)
-    fields = _other_fields(data, measured.tables.keys() | STATIONS)
+    fields = _other_fields(data, measured.tables.keys() | STATIONS, _texts(), has_units=False)
     ranks = {table: rank for rank, table in enumerate(FIRST)}
     fields.sort(key=lambda field: ranks.get(field.path.partition(".")[0], len(ranks)))
     main, more = fields[:MOST_FIELDS], fields[MOST_FIELDS:]
     return Card("own", "own file", case.name, data, main, more, measured)
 
 
-def _other_fields(data: Data, left: AbstractSet[str]) -> list[Field]:
+def _other_fields(
+    data: Data, left: AbstractSet[str], texts: Mapping[str, Any], has_units: bool = True
+) -> list[Field]:
     """Return fields of all numbers and limits that act, but for some paths."""
     limits = list(_limits(data))
     paths = [path for path, _ in core.numbers(data) if not path.endswith(IDLE) or path in limits]
     return [
-        field_of(data, path)
+        field_of(data, path, texts, has_units)
         for path in dict.fromkeys([*paths, *limits])
         if left.isdisjoint({path, path.rpartition("[")[0], path.partition(".")[0]})
     ]
@@ -267,4 +289,4 @@ def _limits(data: Data) -> Iterator[str]:
         if table == "stress":
             for place in range(len(layers)):
                 yield from (f"{member}.layers[{place}].bond_strength.{key}" for key in BONDS)
-    yield from (path for table, path in REQUIRED.items() if table in data)
+    yield from (path for table, paths in REQUIRED.items() if table in data for path in paths)

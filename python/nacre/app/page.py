@@ -13,6 +13,8 @@ from nacre.app.fields import Field
 from nacre.app.line import LINES
 from nacre.results import svg
 
+ONLY_TIPS = ("diamond",)
+"""Bodies of which tips alone are made."""
 Files = dict[str, tuple[str, bytes]]
 
 markup = Parts(text_of("nacre.app", "static/page.html"))
@@ -60,21 +62,28 @@ def _form(card: Card, cards: Iterable[Card]) -> Markup:
 
 
 def _field(card: Card, field: Field) -> Markup:
-    """Return label, input, unit and slider of a field.
+    """Return label, input or menu, unit and slider of a field.
 
     Its key in a link is its last name, where no other field of the card has that.
     """
     lasts = Counter(path.rpartition(".")[2] for path in card.by_path)
     last = field.path.rpartition(".")[2]
     least, most = (field.low, field.high) if field.slides == "linear" else (-1, 1)
+    parts = field._asdict() | {
+        "id": f"{card.name}:{field.path}",
+        "key": last if lasts[last] == 1 else field.path,
+        "size": field.size,
+        "placeholder": "unknown" if field.may_be_empty else "",
+        "options": [
+            markup("word", word=word, selected="selected" if word == field.default else "")
+            for word in field.choices
+        ],
+    }
     return markup(
         "field",
-        **field._asdict(),
-        id=f"{card.name}:{field.path}",
-        key=last if lasts[last] == 1 else field.path,
-        size=field.size,
-        placeholder="unknown" if field.may_be_empty else "",
-        slider=markup("slider", **field._asdict(), least=least, most=most) if field.slides else "",
+        **parts,
+        input=markup("choice" if field.choices else "input", **parts),
+        slider=markup("slider", **parts, least=least, most=most) if field.slides else "",
     )
 
 
@@ -86,7 +95,12 @@ def _materials(card: Card) -> Iterator[Markup]:
     for name in card.base.get("materials", {}):
         if f"materials.{name}.young" in card.by_path:
             kind = "coating" if name in layers else "body"
-            known = [_known(each) for each in nacre.materials.values() if each.kind == kind]
+            left = () if "tip" in card.base else ONLY_TIPS
+            known = [
+                _known(each)
+                for each in nacre.materials.values()
+                if each.kind == kind and each.name not in left
+            ]
             yield markup("materials", name=name, known=known)
 
 
@@ -99,5 +113,11 @@ def _known(material: nacre.types.Card) -> Markup:
     is_brittle = material.kind == "body" and "yield_stress" not in {*numbers, *material.unsourced}
     own: dict[str, float | None] = {"yield_stress": None} if is_brittle else {}
     sources = "; ".join(dict.fromkeys(number.source for number in material.numbers.values()))
-    source = ". ".join([material.title, sources, *material.gaps])
-    return markup("known", name=material.name, numbers=json.dumps(own | numbers), source=source)
+    source = ". ".join([sources, *material.gaps])
+    return markup(
+        "known",
+        name=material.name,
+        numbers=json.dumps(own | numbers),
+        title=material.title,
+        source=source,
+    )

@@ -31,6 +31,7 @@ from nacre.bearing.modified import (
     reliability_factor,
     simple_fatigue_load_limit,
 )
+from nacre.bearing.oil import oil_viscosity
 from nacre.bearing.pair import Pair, PairLife, PairSolution
 from nacre.bearing.rating_life import BearingLife
 from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
@@ -70,6 +71,7 @@ __all__ = [
     "life_ratio",
     "load_integrals",
     "mean_dynamic_load",
+    "oil_viscosity",
     "rating",
     "reference_viscosity",
     "reliability_factor",

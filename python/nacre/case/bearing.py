@@ -20,10 +20,12 @@ from nacre.bearing import (
     SphericalRoller,
     TaperedRoller,
     film_thickness,
+    oil_viscosity,
 )
 from nacre.bearing.arguments import Model
 from nacre.bearing.bearings import Solvable
-from nacre.bearing.geometry import Ring
+from nacre.bearing.geometry import RINGS, Ring
+from nacre.bearing.modified import SMALL
 from nacre.bearing.pair import ARRANGEMENTS, Arrangement
 from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
@@ -52,6 +54,8 @@ KINDS: dict[str, type[Solvable]] = {
 }
 """Bearings by their names in case files."""
 PAIR = parameter_texts(Pair)
+DENSITY = 870.0
+"""Density of mineral oil in bearings, 850 to 890 [kg/m³]."""
 
 
 SIZED = ("N", "m", "Pa", "N m", "N/m", "m/s", "m²/s", "Pa s", "1/Pa", "Pa/m", "kg/m³")
@@ -64,6 +68,8 @@ def sizes_of(units: str) -> dict[str, float]:
     return {unit: system.unit(unit)[0] for unit in SIZED}
 
 
+KAPPA = {"viscosity_ratio", "kinematic_viscosity", "film_ratio"}
+"""Keys of a life that say what the table of the oil says."""
 ENCODED = VALUES | keyword_units(Pair, *KINDS.values())
 """SI units of the numbers of bearings and pairs as data, by key."""
 
@@ -179,6 +185,32 @@ class BearingFilm(Oil):
     """Oil film in the heaviest contact of a ring, which is printed; for solved contacts."""
 
     ring: Ring = Field("inner", description="Ring of the contact.")
+    speed: Number | None = Field(
+        None,
+        description="Entrainment speed, the mean of the speeds of both surfaces [m/s]; by default "
+        "that of elements which roll, at the speed of the bearing.",
+    )
+    viscosity: Number | None = Field(
+        None,
+        description="Dynamic viscosity at ambient pressure and the temperature of the inlet "
+        f"[Pa s]; by default that of the table `oil`, with {DENSITY:g} kg/m³.",
+        json_schema_extra={"unit": "Pa s"},
+    )
+
+
+class BearingOil(Table):
+    """Mineral oil of the viscosity index 95: its grade makes the life that of ISO 281 with a_ISO."""
+
+    grade: Number = Field(description="ISO VG, the viscosity at 40 °C in mm²/s.")
+    temperature: Number = Field(description="Temperature of operation in °C.")
+    cleanliness: Literal[tuple(SMALL)] = Field(  # type: ignore[valid-type]
+        "normal cleanliness", description="Degree of cleanliness of ISO 281, table 13."
+    )
+
+    def viscosity(self) -> float:
+        """Return the kinematic viscosity [m²/s]."""
+        with at("bearing.oil"):
+            return oil_viscosity(self.grade, self.temperature)
 
 
 class SingleKind(Table):
@@ -188,10 +220,11 @@ class SingleKind(Table):
 
 
 class BearingKind(SingleKind):
-    """Keys that every bearing may have: what is solved, a life, and a film."""
+    """Keys that every bearing may have: what is solved, a life, its oil, and a film."""
 
     solve: BearingSolve = Field(description="What is solved.")
     life: BearingLife | None = Field(None, description="Life that is printed.")
+    oil: BearingOil | None = Field(None, description="Oil, for the life and the film.")
     film: BearingFilm | None = Field(None, description="Oil film that is printed.")
 
 
@@ -272,6 +305,7 @@ class PairKind(Mounted):
 
     solve: BearingSolve = Field(description="What is solved.")
     life: BearingLife | None = Field(None, description="Life that is printed.")
+    oil: BearingOil | None = Field(None, description="Oil, for the life.")
 
 
 TABLES = {kind: _table(kind, BearingKind, "Case") for kind in KINDS} | {"pair": PairKind}
@@ -304,6 +338,12 @@ class BearingCase(Keys):
                 f'bearing.solve.model must be "solved" for bearing.film, which is that of a '
                 f"contact; got {self.bearing.solve.model!r}"
             )
+        if (
+            self.bearing.film is not None
+            and self.bearing.film.viscosity is None
+            and self.bearing.oil is None
+        ):
+            raise ValueError("bearing.film.viscosity must be given, or the table bearing.oil")
         return self
 
     def _si(self) -> BearingCase:
@@ -331,7 +371,7 @@ class BearingCase(Keys):
 
     def _single(self, path: str, table: SingleKind) -> Any:
         """Return the bearing of a table at a path."""
-        arguments = table.model_dump(exclude={"kind", "solve", "life", "film"}, exclude_unset=True)
+        arguments = table.model_dump(exclude={"kind", "solve", "life", "oil", "film"}, exclude_unset=True)
         for name in arguments:
             value = getattr(table, name)
             if isinstance(value, Body):
@@ -349,10 +389,33 @@ class BearingCase(Keys):
 
     def life(self) -> dict[str, Any] | None:
         """Return the keywords of the life, or None where none is asked for."""
-        table = self._si().bearing.life
-        return None if table is None else table.keywords()
+        bearing = self._si().bearing
+        if bearing.life is None:
+            return None
+        keywords, oil = bearing.life.keywords(), bearing.oil
+        if oil is not None and keywords.keys().isdisjoint(KAPPA):
+            known = {"kinematic_viscosity": oil.viscosity(), "contamination": oil.cleanliness}
+            keywords = known | keywords
+        return keywords
 
     def film(self) -> dict[str, Any] | None:
         """Return the ring and keywords of the film in SI, or None where none is asked for."""
-        table = self._si().bearing.film
-        return None if table is None else {"ring": table.ring, **table.keywords()}
+        si = self._si()
+        table, oil = si.bearing.film, si.bearing.oil
+        if table is None:
+            return None
+        keywords = {"ring": table.ring, **table.keywords()}
+        if oil is not None:
+            keywords.setdefault("viscosity", DENSITY * oil.viscosity())
+        if table.speed is None:
+            keywords["speed"] = _rolling_speed(**si._arguments(), ring=table.ring)
+        return keywords
+
+
+def _rolling_speed(
+    bearing: Any, ring: Ring, speed: float = 0.0, rotating: Ring = "inner", **_: object
+) -> float:
+    """Return the speed of both surfaces in the contacts of a ring whose elements roll [m/s]."""
+    turns = speed if rotating == ring else 0.0
+    cage = bearing.cage_speed(speed, rotating)
+    return float(abs(turns - cage) * bearing.tracks[RINGS.index(ring)])

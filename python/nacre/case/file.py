@@ -226,7 +226,7 @@ class Case:
             self._with_key(self.data, key)
             if (
                 not key.startswith(self._table.solved)
-                or key.startswith("bearing.film.")
+                or key.startswith(("bearing.film.", "bearing.oil."))
                 or key.endswith((".yield_stress", ".strength", ".shear_yield"))
                 or ".bond_strength." in key
                 or key == "wear.required_distance"

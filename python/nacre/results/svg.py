@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.markup import text_of
+from nacre._tools.units import rounded
 from nacre.results.charts import HEADROOM, Array, Axis, Bars, Chart, Curve, Ends, Map, Picture
 
 WIDTH, HEIGHT = 460, 290
@@ -170,7 +171,10 @@ def _ring(ring: Bars) -> str:
     radius = Side(ring.axis, (0.0, float(heights.max(initial=0.0)) or 1.0), INNER, OUTER)
     width = min(7.0, 0.7 * 2 * math.pi * INNER / (count * series))
     elements = [_text(radius.label, x, TOP + 4, "middle")]
-    for length, number in radius.ticks():
+    largest = float(radius.scale.factor * heights.max(initial=0.0))
+    last = [(OUTER, f"largest {rounded(largest, 3)}")] if largest else []
+    inside = [tick for tick in radius.ticks() if tick[0] < OUTER - LINE]
+    for length, number in [*inside, *last]:
         elements.append(f"<circle class='frame' cx='{x}' cy='{y}' r='{length:.1f}'/>")
         elements.append(_text(number, x + 3, y - length - 2))
     for k, label in enumerate(filter(None, labels)):

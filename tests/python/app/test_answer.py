@@ -50,7 +50,7 @@ def main_number(parts: dict[str, Any]) -> tuple[float, str]:
     return float(value), unit
 
 
-@pytest.mark.parametrize("name", CARDS)
+@pytest.mark.parametrize("name", [name for name in CARDS if name != "rough"])
 def test_defaults_are_those_of_the_templates(name: str) -> None:
     data = tomllib.loads(templates.texts()[name])
     case = Case(cards()[name].base).data
@@ -88,6 +88,16 @@ def test_any_data_are_read_back(data: dict[str, Any]) -> None:
     assert tomllib.loads(toml.text(data)) == data
 
 
+def largest_pressure(numbers: dict[str, Any]) -> float:
+    """Return the largest pressure of a result, of a history that of its end."""
+    if "first" in numbers:  # a pair
+        return max(largest_pressure(numbers[name]) for name in ("first", "second"))
+    if "peak_pressures" in numbers:
+        return float(max(map(max, numbers["peak_pressures"])))
+    peaks = numbers["peak_pressure"]
+    return float(peaks[-1] if isinstance(peaks, list) else peaks)
+
+
 @pytest.mark.parametrize("name", QUICK)
 def test_numbers_are_those_of_the_command_line(name: str, tmp_path: Path, capsys: Capture) -> None:
     load = next(
@@ -104,8 +114,7 @@ def test_numbers_are_those_of_the_command_line(name: str, tmp_path: Path, capsys
         expected = max(numbers["approach"])
         value *= {"nm": 1e-3, "µm": 1.0}[unit]
     else:
-        peaks = numbers.get("peak_pressures") or numbers["peak_pressure"]
-        expected = max(map(max, peaks)) if isinstance(peaks, list) else peaks
+        expected = largest_pressure(numbers)
         assert unit == "MPa"
     assert value == pytest.approx(expected, rel=1e-4)
     if stage == "stress":
@@ -147,6 +156,19 @@ VARIATIONS: dict[str, list[dict[str, str]]] = {
         {"bearing.solve.tilt.y": "8"},
         {"bearing.clearance": "5"},
     ],
+    "pair": [
+        {"bearing.solve.force.x": "4000"},
+        {"bearing.preload_force": "2000"},
+        {"bearing.first.contact_angle": "15"},
+    ],
+    "rough": [{"solve.load": "5"}, {"shape.rms_slope": "0.03"}, {"shape.seed": "3"}],
+    "wear": [
+        {"solve.load": "400"},
+        {"body.layers[0].thickness": "5"},
+        {"wear.rate.substrate": "1e-8"},
+    ],
+    "roll": [{"solve.load": "20"}, {"roll.creepage.across": "0.5"}, {"shape.radius_y": "80"}],
+    "fatigue": [{"solve.load": "1500"}, {"shape.radius": "40"}, {"fatigue.friction": "0.3"}],
     "ball-bearing": [
         {"bearing.solve.force.x": "6"},
         {"bearing.solve.force.z": "3"},
@@ -185,7 +207,7 @@ def test_drafts_are_within_their_error(name: str, values: dict[str, str]) -> Non
     assert texts[0].startswith("about ")
     assert "about" not in texts[1]
     assert "<th>about" in draft["rows"]
-    assert "about" not in full["rows"]
+    assert "<th>about" not in full["rows"]
     share = stated(texts[0])
     assert main_number(draft)[0] == pytest.approx(main_number(full)[0], rel=share + 1e-4)
     if "verdict" in draft:
@@ -200,15 +222,18 @@ def test_the_misalignment_is_the_tangent_of_its_angle() -> None:
 
 def test_the_reading_of_a_film_without_a_substrate_is_its_modulus() -> None:
     same = {"materials.glass.young": "3", "materials.glass.poisson": "0.4"}
-    parts = answer(cards()["indentation"].case(same), "full")["parts"]
-    assert parts["verdict"]["level"] == "unknown"
-    assert "gives 3000 MPa for a film of 3000 MPa (1 times)" in parts["verdict"]["words"]
+    card = cards()["indentation"]
+    parts = answer(card.case(same), "full", shown=card.shown)["parts"]
+    assert parts["verdict"]["level"] == "good"
+    assert "gives 3 GPa for a film of 3 GPa (1 times" in parts["verdict"]["words"]
 
 
 def test_the_substrate_shows_below_a_deep_indentation() -> None:
     verdict = answer(cards()["indentation"].case({}), "full")["parts"]["verdict"]
-    assert verdict["level"] == "unknown"
-    assert "(2.4 times)" in verdict["words"]
+    assert verdict["level"] == "bad"
+    assert "(2.4 times, ± 10 % tolerated)" in verdict["words"]
+    unasked = answer(cards()["indentation"].case({"indent.tolerance": ""}), "full")["parts"]
+    assert unasked["verdict"]["level"] == "unknown"
     assert "only up to 1.91 nm" in verdict["lines"][0]
 
 
@@ -414,9 +439,61 @@ def test_markup_in_names_is_text(tmp_path: Path) -> None:
 
 
 def test_numbers_of_fields_are_typed_in_their_unit() -> None:
-    one = Field("a.b", "thing", "µm", 1, 0, 5)
+    one = Field("a.b", "thing", "µm", "m", 1, 0, 5)
     assert one.number(" 2,5 ") == 2.5
     assert one.in_case(2.5, "N-mm-MPa") == 0.0025
+
+
+def test_rows_have_the_units_of_the_card_and_components_their_words() -> None:
+    def rows(name: str, stage: str = "draft") -> str:
+        card = cards()[name]
+        parts = answer(card.case({}), stage, shown=card.shown)["parts"]
+        return html.unescape(parts["rows"])
+
+    of_bearing = rows("bearing")
+    assert "<th>tilt</th><td>2′ about y</td>" in of_bearing
+    assert re.search(r"ratings of contacts</th><td>[\d.]+ kN inner ring, [\d.]+ kN out", of_bearing)
+    assert re.search(r"life in hours</th><td>[\d ]+ h<", of_bearing)
+    assert "tilt" not in rows("ball-bearing")
+    assert "′ along x" in rows("roller")
+    assert "tilt" not in rows("contact")
+    assert "0.1 % along x" in rows("roll")
+    assert "<th>largest load</th><td>1 mN</td>" in rows("indentation")
+    assert "inf" not in rows("cone")
+
+
+@pytest.mark.parametrize("name", CARDS)
+def test_units_of_the_answer_are_those_that_are_typed(name: str) -> None:
+    card = cards()[name]
+    stage = "full" if card.case({}).kind in ("bearing", "wear") else "stress"
+    reply = answer(card.case({}), "draft" if name == "bearing" else stage, shown=card.shown)
+    parts = reply["parts"]
+    text = f"{parts['peak']} {parts['rows']} {parts['verdict']} {parts['warnings']}"
+    typed = {one.unit for one in card.by_path.values()}
+    for dimension in ("Pa", "N"):
+        known = {unit for unit in typed if re.fullmatch(rf".?{dimension}", unit)}
+        if dimension == "Pa" and dimension not in card.shown:
+            known.add("MPa")  # of stresses, beside moduli in GPa
+        units = set(re.findall(rf"\d ((?:[GMkmµ])?{dimension})\b(?![/ ]m)", text))
+        assert not known or units <= known, (units, known)
+
+
+def test_the_oil_acts_in_life_and_film() -> None:
+    card = cards()["bearing"]
+    lives, films = [], []
+    for typed in ("20", "70", "110"):
+        case = card.case({"bearing.oil.temperature": typed})
+        parts = answer(case, "draft")["parts"]
+        lives.append(float(re.findall(r"a_ISO</th><td>([\d.]+)", parts["rows"])[0]))
+        film = case.film() or {}
+        films.append(film["viscosity"])
+        bearing = case.arguments()["bearing"]
+        # Both surfaces have the mean of the speeds of a roller that rolls.
+        gamma = bearing.diameter / bearing.pitch
+        turns = 1500 * math.pi / 30
+        assert film["speed"] == pytest.approx(turns * bearing.pitch / 4 * (1 - gamma**2))
+    assert lives[0] > lives[1] > lives[2]
+    assert films[0] > films[1] > films[2]
 
 
 def test_readings_without_film_are_unknown() -> None:
@@ -439,7 +516,7 @@ def test_the_numbers_of_the_bare_body_stand_beside() -> None:
         other = solutions[1].stress_summary(friction=keywords["friction"])
         of_bare = {row.key: html.escape(row.text) for row in solutions[1]._rows()}
         for row in solutions[0]._rows():
-            if row.key in CONTACT_ROWS:
+            if row.key in CONTACT_ROWS - {"tilt"}:  # of 0, which is not shown
                 pair = html.escape(row.text), of_bare[row.key]
                 assert "<th>{}</th><td>{}</td><td>{}</td>".format(row.label, *pair) in rows
     largest = [max(part.tension[0] for part in one.layers) for one in (coated, other)]

@@ -6,10 +6,11 @@ const all = (selector, root = document) => [...root.querySelectorAll(selector)];
 let forms = [...document.forms], pending = null, sent = null;
 const status = one("output"), problem = one(".error"), note = one(".note");
 const id = crypto.randomUUID();
-let form, age = 0, timer, patience, request = null, drafting = false;
+let form, age = 0, timer, patience, request = null, drafting = false, fresh = false;
 
-const inputs = () => all("input[name]", form);
-const changed = () => inputs().filter((input) => input.value !== input.defaultValue);
+const inputs = () => all("[name]", form);
+const initial = (input) => input.defaultValue ?? input.dataset.default;
+const changed = () => inputs().filter((input) => input.value !== initial(input));
 
 function show(state, words) {
   status.dataset.state = state;
@@ -59,7 +60,10 @@ function change() {
   all("[data-part]").forEach((part) => part.classList.add("stale"));
   // The fragment of the address holds the card and the values that differ from its defaults.
   const values = changed().map((input) => [input.dataset.key, input.value]);
-  history.replaceState(null, "", "#" + new URLSearchParams([["card", form.name], ...values]));
+  // A step back in the browser's history takes back a change: each has one entry, however many keys it took.
+  const link = "#" + new URLSearchParams([["card", form.name], ...values]);
+  if (link !== location.hash) history[fresh ? "pushState" : "replaceState"](null, "", link);
+  fresh = false;
   if (drafting) {
     const under = request;
     patience ??= setTimeout(() => under.abort(), PATIENCE);
@@ -90,6 +94,7 @@ async function ask(stage) {
 function put(reply) {
   tell(problem, reply.error);
   inputs().forEach((input) => input.setCustomValidity(input.name === reply.field ? reply.error : ""));
+  if (reply.error) judge(one(".verdict"), { level: "", words: "No answer to these values.", lines: [] });
   for (const [name, content] of Object.entries(reply.parts ?? {})) {
     const part = one(`[data-part="${name}"]`);
     part.classList.remove("stale");
@@ -113,7 +118,7 @@ function list(element, texts) {
 
 // Sliders: the value over the default is 20 to their power, or they are linear.
 function slide(slider) {
-  const input = one("input[name]", slider.parentElement), { scale, low, high } = slider.dataset;
+  const input = one("[name]", slider.parentElement), { scale, low, high } = slider.dataset;
   const value = scale === "linear" ? +slider.value : input.defaultValue * 20 ** slider.value;
   input.value = +Math.min(Math.max(value, low), high).toPrecision(3);
 }
@@ -125,24 +130,40 @@ function follow(input) {
   slider.value = slider.dataset.scale === "linear" ? value : Math.log(value / input.defaultValue) / Math.log(20) || 0;
 }
 
+// Arrow keys change a number by 1 of its last digit.
+function step(input, direction) {
+  const digits = /^\s*[-−]?\d+(?:[.,](\d+))?\s*$/.exec(input.value);
+  if (!digits) return false;
+  const places = digits[1]?.length ?? 0, value = +input.value.replace(",", ".").replace("−", "-");
+  input.value = (value + direction / 10 ** places).toFixed(places);
+  return true;
+}
+
 // A material fills the numbers of a body that it has, and shows its source; another number takes it off again.
+// The numbers that it replaces come back with "own numbers".
 function choose(select) {
-  const { numbers, source } = select.selectedOptions[0].dataset, path = `materials.${select.dataset.material}.`;
+  const { numbers, title, source } = select.selectedOptions[0].dataset, path = `materials.${select.dataset.material}.`;
   const known = numbers ? JSON.parse(numbers) : null;
-  for (const input of known ? inputs().filter((one) => one.name.startsWith(path)) : []) {
-    const value = known[input.name.slice(path.length)];
-    if (value !== undefined) input.value = value === null ? "" : +(value / input.dataset.si).toPrecision(9);
-    else if (input.dataset.filled) input.value = input.defaultValue;
-    input.dataset.filled = value === undefined ? "" : "filled";
+  for (const input of inputs().filter((one) => one.name.startsWith(path))) {
+    const value = known?.[input.name.slice(path.length)];
+    if (value !== undefined) {
+      input.dataset.own ??= input.value;
+      input.value = value === null ? "" : +(value / input.dataset.si).toPrecision(9);
+    } else if (input.dataset.own !== undefined) {
+      input.value = input.dataset.own;
+      delete input.dataset.own;
+    }
     follow(input);
   }
-  tell(select.parentElement.nextElementSibling, source);
+  const details = select.parentElement.nextElementSibling, before = all(".material", form).find((other) => other.value === select.value);
+  details.hidden = !known || before !== select; // each source once
+  details.replaceChildren(Object.assign(document.createElement("summary"), { textContent: title }), source ?? "");
 }
 
 function release(input) {
   const select = all(".material", form).find(({ dataset }) => input.name.startsWith(`materials.${dataset.material}.`));
   if (!select) return;
-  input.dataset.filled = "";
+  inputs().forEach((other) => other.name.startsWith(`materials.${select.dataset.material}.`) && delete other.dataset.own);
   select.value = "";
   choose(select);
 }
@@ -206,14 +227,18 @@ function restore() {
   const { card, ...values } = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
   const linked = document.forms.namedItem(card), left = [];
   form = linked ?? document.forms.namedItem("own") ?? document.forms.namedItem("contact");
-  linked?.reset();
+  form.reset();
+  inputs().forEach((input) => delete input.dataset.own);
   for (const [key, value] of linked ? Object.entries(values) : []) {
     const input = inputs().find((other) => other.dataset.key === key);
     if (input) input.value = value;
     else left.push(key);
   }
-  tell(note, left.length ? `The link has values that are not known here: ${left.join(", ")}` : "");
+  const unknown = card && !linked ? `The link has a card that is not known here: ${card}` : "";
+  tell(note, left.length ? `The link has values that are not known here: ${left.join(", ")}` : unknown);
+  fresh = false;
   open(form);
+  fresh = true;
 }
 
 async function save(path, stage, type, ending) {
@@ -230,10 +255,19 @@ document.addEventListener("input", ({ target }) => {
   else if (target.name === "line") return;
   else if (target.name) follow(target);
   else return;
-  release(one("input[name]", target.parentElement));
+  release(one("[name]", target.parentElement));
   change();
 });
+document.addEventListener("keydown", (event) => {
+  const { target, key } = event, direction = { ArrowUp: 1, ArrowDown: -1 }[key];
+  if (direction && target.matches("input[name]") && step(target, direction)) {
+    event.preventDefault();
+    target.dispatchEvent(new Event("input", { bubbles: true }));
+  }
+  if (key === "z" && (event.ctrlKey || event.metaKey) && !target.matches("input:not([type=range])")) history.back();
+});
 document.addEventListener("change", ({ target }) => {
+  fresh = true;
   if (target.name === "line") fill(target);
   if (target.dataset.reading) {
     pending.reading[target.dataset.reading] = target.value;
@@ -244,10 +278,14 @@ document.addEventListener("change", ({ target }) => {
     choose(target);
     change();
   }
+  fresh = true;
 });
+document.addEventListener("focusin", () => (fresh = true)); // what comes next is another change
 document.addEventListener("submit", (event) => event.preventDefault());
 one("nav").addEventListener("click", ({ target }) => {
-  if (target.className === "tab") open(forms.find((other) => other.dataset.group === target.dataset.group));
+  if (target.className !== "tab") return;
+  fresh = true;
+  open(forms.find((other) => other.dataset.group === target.dataset.group));
 });
 one("[data-testid=open]").addEventListener("click", () => one("[type=file]").click());
 one("[type=file]").addEventListener("change", ({ target }) => take(target.files).then(() => (target.value = "")));
