@@ -93,8 +93,8 @@ DEFINED = {
     **dict.fromkeys(("rpm", "U/min", "r/min", "rev/min"), (2 * math.pi / 60, "rad/s")),
     **dict.fromkeys(("1/min", "min-1"), (2 * math.pi / 60, "rad/s")),
 }
-"""Units in which people type numbers, by name: each is a multiple of another unit, but for four base
-units. The inverse of a minute is a speed of rotation, since everybody counts turns in it."""
+"""Units in which people type numbers, by name: each is a multiple of another unit, but for four
+base units. The inverse of a minute is a speed of rotation, since everybody counts turns in it."""
 PREFIXED = ("g", "m", "s", "N", "Pa", "J", "rad", "bar", "Nm", "Pas", "P", "St", "Hz")
 """Units that may have a prefix."""
 TYPED = re.compile(r"([+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d{1,3}+)?+)\s*((?!1$)\S.*)")
