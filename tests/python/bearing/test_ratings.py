@@ -519,7 +519,7 @@ def test_ratings_that_no_balls_have_are_refused() -> None:
         estimated_balls(**known, count=14)
     for name in ("diameter", "pitch_diameter"):
         with pytest.raises(TypeError, match=rf"{name} must be left out: .* got 0\.05"):
-            estimated_balls(**known, **{name: 50e-3})
+            estimated_balls(**known, **{name: 50e-3})  # type: ignore[arg-type]
     with pytest.warns(nacre.NacreWarning, match="are estimates") as warned:
         estimated_balls(**known)
     assert warned[0].filename == __file__
