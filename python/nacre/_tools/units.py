@@ -90,18 +90,20 @@ DEFINED = {
     **dict.fromkeys(("°", "deg"), (math.pi / 180, "rad")),
     **dict.fromkeys(("′", "'", "arcmin"), (math.pi / 180 / 60, "rad")),
     **{"%": (1e-2, "1"), "‰": (1e-3, "1"), "1": (1.0, "1"), "Hz": (2 * math.pi, "rad/s")},
-    **dict.fromkeys(("rpm", "U/min", "1/min", "min-1"), (2 * math.pi / 60, "rad/s")),
+    **dict.fromkeys(("rpm", "U/min", "r/min", "rev/min"), (2 * math.pi / 60, "rad/s")),
+    **dict.fromkeys(("1/min", "min-1"), (2 * math.pi / 60, "rad/s")),
 }
-"""Units in which people type numbers, by name: each is so many of another one; four are of their
-own. A minute's inverse is a speed of rotation, in which everybody counts turns."""
+"""Units in which people type numbers, by name: each is a multiple of another unit, but for four
+base units. The inverse of a minute is a speed of rotation, since everybody counts turns in it."""
 PREFIXED = ("g", "m", "s", "N", "Pa", "J", "rad", "bar", "Nm", "Pas", "P", "St", "Hz")
 """Units that may have a prefix."""
 TYPED = re.compile(r"([+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d{1,3}+)?+)\s*((?!1$)\S.*)")
 """A number and its unit."""
 LONGEST_TYPED = 60
 """Largest number of characters of a number with its unit."""
-FACTOR = re.compile(r"(^| ?/ ?| )([^\W\d]+|[°′'%‰]|1(?!\d))(-?\d)?")
-"""A unit in a product or a quotient as it is typed: the sign before it, its name and its power."""
+FACTOR = re.compile(r"(^| ?/ ?| )([^\W\d]+|[°′']|(?<!.)1(?= ?/))(-?\d)?")
+"""A unit in a product or a quotient as it is typed: the sign before it, its name and its power. A
+number 1 is above the line alone."""
 SPELLINGS = str.maketrans(
     {"·": " ", "⋅": " ", "*": " ", "^": "", "μ": "µ"}
     | {sign: str(power) for sign, power in zip("²³⁴¹⁻", (2, 3, 4, 1, "-"), strict=True)}
@@ -112,7 +114,7 @@ SPELLINGS = str.maketrans(
 def _measure(unit: str) -> tuple[Fraction, dict[str, int]] | None:
     """Return the exact size in SI, and the powers of kg, m, s and rad, of a unit as it is typed.
 
-    It is None of one that is not known, and of one that can be read in two ways: "N/m m", "m m".
+    It is None of a unit that is not known, or that can be read in two ways: "N/m m", "m m".
     """
     unit = unit.replace("**", "").translate(SPELLINGS).strip()
     unit = f"1{unit}" if unit.startswith("/") else unit
@@ -159,12 +161,13 @@ def number_in(unit: str, text: str) -> float:
     (0.005, 3.141592653589793, 0.001)
     """
     typed = TYPED.fullmatch(text.strip().replace("−", "-")) if len(text) <= LONGEST_TYPED else None
-    target, own = _measure(unit or "1"), typed and _measure(typed[2])
-    if typed and target and own and own[1] == target[1]:
+    target, source = _measure(unit or "1"), typed and _measure(typed[2])
+    if typed and target and source and source[1] == target[1]:
         with suppress(OverflowError):
-            return float(Fraction(typed[1]) * own[0] / target[0])
+            return float(Fraction(typed[1]) * source[0] / target[0])
     must = f"in {unit} or in another unit of its kind" if unit else "without a unit, or in %"
-    raise ValueError(f"must be a number {must}, got {text!r}")
+    hint = "; a decimal mark is a point" if "," in text else ""
+    raise ValueError(f"must be a number {must}, got {text!r}{hint}")
 
 
 PLAIN = {
@@ -263,7 +266,7 @@ def system() -> System:
 
 
 def are_declared() -> bool:
-    """Return whether somebody has said here in which units numbers are, SI too."""
+    """Return whether the units of numbers are declared here, be they SI or others."""
     return _block.get() is not None or system() is not SI
 
 

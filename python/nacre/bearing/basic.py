@@ -14,7 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from nacre.bearing.geometry import Bearing, above
+import nacre._core as core
+from nacre.bearing.geometry import Bearing
 from nacre.bearing.iso import is_thrust
 from nacre.bearing.kinds import RollerBearing, checked_bearing
 from nacre.bearing.static import checked_forces
@@ -38,10 +39,11 @@ AXIAL = (1.00, 0.87, 0.76, 0.66, 0.57, 0.50)
 SHARES = 1e-3
 """Largest difference of a sum of shares and 1: thirds with three digits are as good."""
 UNREAD = (
-    "ISO 281's X and Y for this bearing under these forces are not in nacre: its tables were not "
-    "read for contact angles of balls below 15°, thrust bearings with a radial load, and rollers "
-    "without a contact angle with an axial one"
+    "ISO 281's X and Y for this bearing under these forces are not in nacre: it has none for balls "
+    "with a contact angle below 15°, thrust bearings with a radial load, and rollers without a "
+    "contact angle under an axial load"
 )
+"""Why a basic life is not known."""
 ROLLERS = (
     "L10 has the exponent 10/3, and contacts rated with a factor 0.83; ISO/TS 16281 has the "
     "exponent 4 and no such factor: L10r of rollers is some 2 to 4 times as long, less with "
@@ -86,7 +88,8 @@ def equivalent_dynamic_load(bearing: Bearing, radial: float, axial: float = 0.0)
     """
     load = known_load(bearing, radial, axial)
     if load is None:
-        raise ValueError(f"{UNREAD}; got a {type(bearing).__name__}, {radial!r} and {axial!r} N")
+        kind = type(bearing).__name__
+        raise ValueError(f"{UNREAD}; got {kind} with radial {radial!r} N and axial {axial!r} N")
     return load
 
 
@@ -178,7 +181,8 @@ def mean_dynamic_load(bearing: Bearing, loads: Sequence[float], shares: Sequence
     Raises
     ------
     ValueError
-        If a load is below 0, or shares are not above 0, as many as loads, with the sum 1.
+        If there is no load or one below 0, or shares are not above 0, as many as loads, with the
+        sum 1.
 
     Examples
     --------
@@ -188,13 +192,14 @@ def mean_dynamic_load(bearing: Bearing, loads: Sequence[float], shares: Sequence
     1401
     """
     power = checked_bearing(bearing).standards.life_exponent
-    checked = np.array([checked_forces(load, 0.0)[0] for load in loads])
-    weights = np.array([above("shares", share) for share in shares])
-    if len(checked) != len(weights) or not abs(weights.sum() - 1) <= SHARES:
+    forces, weights = core.real_array("loads", loads), core.real_array("shares", shares)
+    if forces.ndim != 1 or not (np.isfinite(forces) & (forces >= 0)).all():
+        raise ValueError(f"loads must be a list of finite numbers, at least 0, got {loads!r}")
+    if weights.shape != forces.shape or not abs(weights.sum() - 1) <= SHARES or min(weights) <= 0:
         raise ValueError(
-            f"shares must be as many as loads, with the sum 1, got {len(weights)} with the sum "
-            f"{weights.sum():g} for {len(checked)}"
+            f"shares must be as many as loads, above 0, with the sum 1, got {shares!r} for "
+            f"{forces.size} loads"
         )
-    most = float(checked.max()) or 1.0  # without overflow
-    mean = float(np.average((checked / most) ** power, weights=weights))
-    return float(most * mean ** (1 / power))
+    largest = float(forces.max()) or 1.0  # without overflow
+    mean = float(np.average((forces / largest) ** power, weights=weights))
+    return float(largest * mean ** (1 / power))

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import nacre._core as core
 from nacre._tools.groups import names_itself
+from nacre._tools.notices import warn
 from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
 from nacre.bearing.geometry import SMALLEST, WIDEST, Bearing, above
 from nacre.bearing.iso import rating
@@ -19,7 +20,7 @@ from nacre.bearing.static import static_rating
 TOLERANCE = 0.05
 """Difference of ratings that a catalogue may have: fifteen of ball bearings are within 0.8 %."""
 IMPROVED = 0.07
-"""Difference above ISO 281 that a maker's improved class may have: 4, 5 and 6 % of a 6305, a 6309
+"""Largest excess over ISO 281 of a maker's improved class: 4, 5 and 6 % of a 6305, a 6309
 and a 6205."""
 FEWEST, MOST = 5, 40
 """Numbers of balls between which an estimate is looked for."""
@@ -164,36 +165,38 @@ def estimated_balls(
     >>> bearing.count, round(bearing.diameter * 1e3, 2)
     (9, 9.55)
     """
+    if wrong := sorted(others.keys() & {"diameter", "pitch_diameter"}):
+        raise TypeError(f"{wrong[0]} must be left out: it is estimated, got {others[wrong[0]]!r}")
     bore, outside = above("bore", bore), above("outside_diameter", outside_diameter, bore)
     capacity, static = above("capacity", capacity), above("static_capacity", static_capacity)
     pitch = (bore + outside) / 2
-    dimensions: dict[str, Any] = {"pitch_diameter": pitch, **others}
+    dimensions: dict[str, Any] = {"pitch_diameter": pitch} | others
     kind = DeepGrooveBall if contact_angle is None else AngularContactBall
     if contact_angle is not None:
         dimensions["contact_angle"] = contact_angle
-    counts = range(FEWEST, MOST + 1) if count is None else [core.integer("count", count)]
-    found: list[tuple[float, DeepGrooveBall | AngularContactBall]] = []
-    for number in counts:
+    if count is not None and (count := core.integer("count", count)) < 2:
+        raise ValueError(f"count must be at least 2, got {count}")
+    candidates: list[tuple[float, DeepGrooveBall | AngularContactBall]] = []
+    for number in range(FEWEST, MOST + 1) if count is None else [count]:
         make = partial(kind, count=number, **dimensions)
         if (diameter := _diameter(make, number, static, pitch, (outside - bore) / 2)) is not None:
             bearing = make(diameter=diameter)
-            found.append((capacity / rating(bearing) - 1, bearing))
-    found.sort(key=lambda candidate: abs(candidate[0]))
-    fitting = [bearing for above_own, bearing in found if -TOLERANCE <= above_own <= IMPROVED]
+            candidates.append((capacity / rating(bearing) - 1, bearing))
+    candidates.sort(key=lambda candidate: abs(candidate[0]))
+    fitting = [bearing for excess, bearing in candidates if -TOLERANCE <= excess <= IMPROVED]
     if not fitting:
+        balls = "balls" if count is None else f"{count} balls"
         raise ValueError(
-            f"capacity and static_capacity must be those of balls between the rings, C from "
+            f"capacity and static_capacity must be those of {balls} between the rings, C from "
             f"{100 * TOLERANCE:g} % below to {100 * IMPROVED:g} % above ISO 281, got "
             f"{capacity:.6g} and {static:.6g} N: are they in N?"
         )
-    best, *others_fitting = fitting
-    words = [f"{ball.count} of {ball.diameter * 1e3:.4g} mm" for ball in others_fitting]
+    best, *alternatives = fitting
+    words = [f"{ball.count} of {ball.diameter * 1e3:.4g} mm" for ball in alternatives]
     more = f"; others are {', '.join(words)}: count the balls, and give count" if words else ""
-    warnings.warn(
+    warn(
         f"count {best.count}, diameter {best.diameter * 1e3:.4g} mm and pitch_diameter "
-        f"{pitch * 1e3:.4g} mm are estimates from the ratings of the catalogue{more}",
-        core.NacreWarning,
-        stacklevel=2,
+        f"{pitch * 1e3:.4g} mm are estimates from the ratings of the catalogue{more}"
     )
     return best
 

@@ -135,18 +135,18 @@ def reliability_factor(reliability: float) -> float:
     (0.64, 0.792)
     """
     value = core.real("reliability", reliability)
-    least, most = min(RELIABILITY), max(RELIABILITY)
-    if not least <= value <= most:
-        raise ValueError(
-            f"reliability must be a share from {least:g} to {most:g}, got {reliability!r}"
-        )
     for known, factor in RELIABILITY.items():
         if math.isclose(known, value, rel_tol=1e-9):
             return factor
-    failing, rows = np.log(list(RELIABILITY)), list(RELIABILITY.values())
-    lives = (failing / failing[0]) ** (1 / SLOPE)
-    life = (math.log(value) / failing[0]) ** (1 / SLOPE)
-    return float(np.interp(life, lives[::-1], rows[::-1]))
+    least, most = min(RELIABILITY), max(RELIABILITY)
+    if not least < value < most:
+        raise ValueError(
+            f"reliability must be a share from {least:g} to {most:g}, got {reliability!r}"
+        )
+    logarithms, factors = np.log(list(RELIABILITY)), list(RELIABILITY.values())
+    lives = (logarithms / logarithms[0]) ** (1 / SLOPE)
+    life = (math.log(value) / logarithms[0]) ** (1 / SLOPE)
+    return float(np.interp(life, lives[::-1], factors[::-1]))
 
 
 def reference_viscosity(speed: float, pitch_diameter: float) -> float:

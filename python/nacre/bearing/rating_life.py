@@ -48,6 +48,9 @@ BARRELS = "barrels have none of the standard's edge factors"
 """The same of spherical rollers."""
 LATER = ("uncertainty", "doubt", "caution", "basic_life", "comparison", "notes")
 """Fields of lives that older files do not have."""
+ROUNDING = 1e-6
+"""Share of a force below which its radial or axial component is the rounding of the equilibrium:
+bearings are solved to 1e-9 by default."""
 ROUNDED = 1e-3
 """Largest difference of a sum of shares and 1: thirds with three digits are as good."""
 
@@ -235,7 +238,11 @@ class _Terms(NamedTuple):
         bearing, cycles = solution.bearing, share * abs(speed)
         reference = reference_of(solution, self.edge, self.rotating)
         x, y, z = solution.force
-        basic = known_load(bearing, math.hypot(x, y), abs(z))
+        radial, axial = math.hypot(x, y), abs(z)
+        least_force = ROUNDING * math.hypot(radial, axial)
+        basic = known_load(
+            bearing, *(force if force > least_force else 0.0 for force in (radial, axial))
+        )
         least = _least(solution, self.edge, reference.load_power)
         if self.limit is None:
             return _Rate(reference, basic, cycles, least, 1.0, None)
@@ -302,10 +309,10 @@ def _duties(
         raise ValueError(f"spectrum must have shares that sum to 1, got {sum(shares):g}")
     checked = []
     for place, share, (_, force, speed) in zip(places, shares, duties, strict=True):
-        turns = above(f"speed of {place}", speed, -math.inf, "rad/s")
-        if turns == 0:
+        rotation = above(f"speed of {place}", speed, -math.inf, "rad/s")
+        if rotation == 0:
             raise ValueError(f"speed of {place} must not be 0: at rest there are no revolutions")
-        checked.append((share / sum(shares), _conditions(solution, place, force), turns))
+        checked.append((share / sum(shares), _conditions(solution, place, force), rotation))
     return checked
 
 
@@ -363,8 +370,8 @@ def life_of(
     limit = _limit(solution.bearing, lubrication, limit)
     terms = _Terms(edge, rotating, lubrication, limit)
     if spectrum is None:
-        turns = solution.speed if speed is None else above("speed", speed, -math.inf, "rad/s")
-        rates = [terms.rate(solution, 1.0, turns)]
+        rotation = solution.speed if speed is None else above("speed", speed, -math.inf, "rad/s")
+        rates = [terms.rate(solution, 1.0, rotation)]
     elif speed is not None:
         raise ValueError("speed must not be given beside spectrum, which has speeds")
     else:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -13,6 +12,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import keyword_units, with_units
+from nacre._tools.notices import warn
 from nacre._tools.typing import among
 from nacre._tools.units import rounded, symbol
 from nacre.bearing.arguments import Model, Operation
@@ -588,7 +588,7 @@ class BearingSolution(Equilibrium):
             self, edge, rotating, speed, reliability, lubrication, fatigue_load_limit, spectrum
         )
         for text in life.notes:
-            warnings.warn(text, core.NacreWarning, stacklevel=2)
+            warn(text)
         return required(life, self.required_life if required_life is None else required_life)
 
     def static_load(self) -> StaticLoad:

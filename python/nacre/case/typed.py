@@ -46,22 +46,25 @@ def with_numbers(data: Mapping[str, object]) -> dict[str, Any]:
             return [read(item, (*keys, number)) for number, item in enumerate(entry)]
         if not (isinstance(entry, str) and NUMERIC.match(entry)):
             return entry
-        own = unit(keys[:-1] if isinstance(keys[-1], int) else keys)
-        if own is None:
+        is_item = isinstance(keys[-1], int)  # all items of a list have the same unit
+        wanted = unit((*keys[:-1], 0) if is_item else keys)
+        if wanted is None:
             return entry
         with at(Place(keys, {}, entry).key):
-            return number_in(own, entry)
+            return number_in(wanted, entry)
 
     numbers: dict[str, Any] = read(data, ())
     return numbers
 
 
 def _unit_of_texts(data: Mapping[str, object], keys: Keys, system: System) -> str | None:
-    """Return the unit of the numbers at a place of a case; None where there are no numbers."""
-    if keys[:2] == STUDY and len(keys) > 2:
-        keys = steps_of(data, str(keys[2]))
+    """Return the unit of the number at a place of a case; None where there is no number."""
+    if keys[:2] == STUDY and len(keys) > 3 and keys[3] != "count":
+        keys = (*steps_of(data, str(keys[2])), *keys[4:])
+    is_item = isinstance(keys[-1], int)
+    keys = keys[:-1] if is_item else keys
     here = place(data, keys)
-    kinds = [kind for option in options(here.node) for kind in (option, option.get("items", {}))]
+    kinds = [option.get("items", {}) if is_item else option for option in options(here.node)]
     is_text = any(kind.get("type") == "string" and kind.keys().isdisjoint(FIXED) for kind in kinds)
     if here.path != keys or is_text or not any(kind.get("type") == "number" for kind in kinds):
         return None

@@ -304,11 +304,11 @@ class Solution(NormalContact, Shown, Result):
     def report(self) -> Report:
         """Report: how the solution came about, and how good it is."""
         report = Report._of(self._solved.report())
-        found = dict(plausible.of_contact(self, report))
+        doubts = dict(plausible.of_contact(self, report))
         return replace(
             report,
-            warnings=[*report.warnings, *found.values()],
-            warning_kinds=[*report.warning_kinds, *found],
+            warnings=[*report.warnings, *doubts.values()],
+            warning_kinds=[*report.warning_kinds, *doubts],
         )
 
     def stiffness(self) -> Field:

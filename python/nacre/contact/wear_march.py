@@ -421,8 +421,8 @@ class WearMarch:
         self.settled = NOT_SETTLED not in known
         self.step_error = (self.earlier.step_error if self.earlier else None) or 0.0
         self.peak_error, self.regrids = 0.0, 0
-        rubs = plausible.of_coefficient((sliding.slide or sliding.roll or {}).get("friction"))
-        self.rate_warnings = [*_rate_warnings(self.options), *(text for _, text in rubs)]
+        doubts = plausible.of_coefficient((sliding.slide or sliding.roll or {}).get("friction"))
+        self.rate_warnings = [*_rate_warnings(self.options), *(text for _, text in doubts)]
 
     def _check_store(self, stored: WearHistory | None) -> None:
         """Raise a `ValueError` if a store is of other inputs."""

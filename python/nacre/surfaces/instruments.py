@@ -63,7 +63,7 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
         return _table(text, channel)
 
     return _first_content(
-        path, channel, lambda reader: _heights(reader, channel, _most(path)), table
+        path, channel, lambda reader: _heights(reader, channel, _largest_part(path)), table
     )
 
 
@@ -85,6 +85,8 @@ def netcdf(path: Path, channel: str | int | None) -> Heights:
             arrays = [a for a in file.data_vars.values() if a.ndim == 2 and a.dtype.kind in "biuf"]
             if not arrays:
                 raise Unfound("the file must hold heights, an array of two dimensions, got none")
+            if all(1 in a.shape for a in arrays):
+                raise Unfound("the file " + NO_MAP.format(f" in {str(arrays[0].name)!r}"))
             channels = [
                 SimpleNamespace(
                     name=a.name,
@@ -96,7 +98,7 @@ def netcdf(path: Path, channel: str | int | None) -> Heights:
             ]
             chosen = _channel(SimpleNamespace(channels=channels), channel, 2)
             array = next(a for a in arrays if a.name == chosen.name)
-            if array.nbytes > _most(path):
+            if array.nbytes > _largest_part(path):
                 raise Unfound("the file " + UNPROPORTIONAL.format(repr(array.name), array.nbytes))
             heights = array.values.astype(np.float64)
             steps = [_step(file[name]) if name in file else None for name in map(str, array.dims)]
@@ -108,7 +110,7 @@ def netcdf(path: Path, channel: str | int | None) -> Heights:
         ) from error
     ascending = tuple(slice(None, None, -1 if step and step < 0 else 1) for step in steps)
     heights, (dx, dy) = heights[ascending], (abs(step) if step else None for step in steps)
-    if array.dims == ("y", "x"):
+    if [str(name).lower() for name in array.dims] == ["y", "x"]:
         heights, dx, dy = heights.T, dy, dx
     return Heights(
         heights,
@@ -127,7 +129,8 @@ def _step(coordinate: Any) -> float | None:
         return None
     places = coordinate.values.astype(np.float64)
     step = float(places[-1] - places[0]) / (places.size - 1)
-    if not (np.abs(places - places[0] - step * np.arange(places.size)) <= OFF * abs(step)).all():
+    even = places[0] + step * np.arange(places.size)
+    if step == 0 or not (np.abs(places - even) <= OFF * abs(step)).all():
         raise ValueError(f"its places along {coordinate.name} must be on a regular grid")
     return float(step * size)
 
@@ -199,7 +202,7 @@ def _first_content(
     )
 
 
-def _most(path: Path) -> int:
+def _largest_part(path: Path) -> int:
     """Return how many bytes a part of a file may unpack to."""
     return max(RATIO * path.stat().st_size, LEAST_UNPACKED)
 
@@ -214,7 +217,7 @@ def _check_sizes(path: Path) -> None:
         with suppress(zipfile.BadZipFile), zipfile.ZipFile(path) as archive:
             parts = [(item.filename, item.file_size) for item in archive.infolist()]
     for name, size in parts:
-        if size > _most(path):
+        if size > _largest_part(path):
             raise ValueError(f"{str(path)!r} {UNPROPORTIONAL.format(repr(name[:60]), size)}")
 
 
@@ -284,7 +287,7 @@ def _x3p_copy(path: Path) -> str | io.BytesIO:
             for name in (main, *(name for name in members if name != main)):
                 if name != main and name.removeprefix(folder).encode() not in named:
                     continue
-                if (size := members[name].file_size) > _most(path):
+                if (size := members[name].file_size) > _largest_part(path):
                     raise Other(UNPROPORTIONAL.format(repr(name[:60]), size))
                 content = archive.read(name)
                 if name == main:

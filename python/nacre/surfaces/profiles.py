@@ -127,13 +127,13 @@ def read_profile(
     given = {"unit": unit, "x": x, "drop": drop, "height": height, "spacing": spacing}
     if path.suffix.lower() in SIMPACK:
         places, drops = _simpack(path)
-    elif (found := scan(path)) is not None:
+    elif (profile := scan(path)) is not None:
         if wrong := [f"{name}={value!r}" for name, value in given.items() if value is not None]:
             raise ValueError(
                 f"{' and '.join(wrong)} must be left out: the head of {str(path)!r} says what its "
                 f"numbers are"
             )
-        places, drops = found[0], _depths(found[1])
+        places, drops = profile[0], _depths(profile[1])
     elif is_text(path.read_bytes()):
         places, drops = _table(path, unit, x, drop, height, spacing)
     else:

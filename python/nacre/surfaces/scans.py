@@ -39,7 +39,8 @@ def scan(path: Path) -> tuple[Array, Array] | None:
         fields = records[1 if form == "SDF" else 2].split()
         if len(fields) != count or count < 2 or not (0 < step < np.inf and 0 < size < np.inf):
             raise ValueError(
-                f"its head has {count:g} points, {step:g} m apart, and it has {len(fields)} heights"
+                f"its head has {count:g} points, {step:g} m apart, and heights in {size:g} m, and "
+                f"it has {len(fields)} heights"
             )
         heights = np.array([np.nan if text == "BAD" else float(text) for text in fields])
     except (ValueError, LookupError, StopIteration) as error:
@@ -65,7 +66,10 @@ def _axes(records: list[str]) -> tuple[float, float, float]:
     in front of units.
     """
     lines = [line.split() for line in records[0].splitlines()]
-    axes = {line[0]: line[1:] for line in lines if line[:1] in (["CX"], ["CZ"])}
+    lines = [line for line in lines if line[:1] in (["CX"], ["CZ"])]
+    axes = {line[0]: line[1:] for line in lines}
+    if len(axes) < len(lines):
+        raise ValueError("its head has several lines CX or CZ")
     if axes["CX"][0] == "A":
         raise ValueError("its places are absolute (CX A), and must have even steps (CX I)")
     sizes, numbers = {}, {}
@@ -74,8 +78,10 @@ def _axes(records: list[str]) -> tuple[float, float, float]:
         numbers[name] = [float(field) for field in fields[2:] if re.match(r"[\d.+-]", field)]
     is_standard = metres(axes["CX"][2]) is not None
     steps = numbers["CX"][1:] if is_standard else numbers["CX"]
-    given = [line.split()[2:] for line in records[1].splitlines() if "SPACING CX" in line]
-    step = float(given[0][0]) if given else steps[0]
+    spacings = [line.split()[2:] for line in records[1].splitlines() if "SPACING CX" in line]
+    if len(spacings) > 1:
+        raise ValueError("it has several lines SPACING CX")
+    step = float(spacings[0][0]) if spacings else steps[0]
     factor = numbers["CX"][0] if is_standard else 1.0
     places, count = (float(axes[name][1]) for name in ("CX", "CZ"))
     if places != count:

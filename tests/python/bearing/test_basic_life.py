@@ -182,6 +182,14 @@ def test_factors_that_were_not_read_are_left_out(bearing: Any, forces: Any) -> N
         basic_life(bearing, -1.0)
 
 
+@pytest.mark.parametrize("model", ["iso16281", "solved"])
+def test_thrust_bearings_under_thrust_have_a_basic_life(model: Any) -> None:
+    # The equilibrium leaves some 1e-17 of the force across the axis.
+    life = THRUST.solve(force=(0.0, 0.0, 2e3), speed=100.0, model=model).life()
+    assert life.basic_load == pytest.approx(2e3, rel=1e-6)
+    assert life.basic_life == pytest.approx((life.capacity / 2e3) ** 3, rel=1e-6)
+
+
 def test_a_left_out_life_is_said() -> None:
     life = turning(replace(ANGULAR, contact_angle=math.radians(12)), 1e3, 2e3).life()
     assert life.basic_life is life.basic_load is None
@@ -197,10 +205,16 @@ def test_mean_loads_live_as_long_as_all_loads() -> None:
         assert basic_life(bearing, mean) == pytest.approx(1 / used, rel=1e-12)
         assert mean_dynamic_load(bearing, [5e3], [1.0]) == pytest.approx(5e3, rel=1e-12)
         assert mean_dynamic_load(bearing, [0.0], [1.0]) == 0.0
-        wrong: list[tuple[list[float], list[float]]] = [([1.0, 2.0], [1.0]), ([1.0], [0.5])]
-        for loads, shares in wrong:
-            with pytest.raises(ValueError, match="shares must be as many as loads, with the sum 1"):
+        pairs: list[tuple[list[float], list[float]]] = [([1.0, 2.0], [1.0]), ([1.0], [0.5])]
+        for loads, shares in [*pairs, ([], []), ([1.0, 1.0], [2.0, -1.0])]:
+            with pytest.raises(ValueError, match=r"shares must be as many as loads, above 0, with"):
                 mean_dynamic_load(bearing, loads, shares)
+        for wrong in ([-1.0], [math.inf], [[1.0]]):
+            with pytest.raises(ValueError, match="loads must be a list of finite numbers, at"):
+                mean_dynamic_load(bearing, wrong, [1.0])  # type: ignore[arg-type]
+        for kind in ("12", None, [True]):
+            with pytest.raises(TypeError, match="loads must be a real array"):
+                mean_dynamic_load(bearing, kind, [1.0])  # type: ignore[arg-type]
     solution = turning(SKF_6309, 5e3)
     spectrum = [(0.5, (2e3, 0.0, None), 100.0), (0.5, (6e3, 0.0, None), 300.0)]
     mean = mean_dynamic_load(SKF_6309, [2e3, 6e3], [0.25, 0.75])

@@ -526,5 +526,18 @@ def test_ratings_that_no_balls_have_are_refused() -> None:
             estimated_balls(
                 bore=30e-3, outside_diameter=62e-3, capacity=60e3, static_capacity=11.3e3
             )
+    known: dict[str, Any] = {"bore": 30e-3, "outside_diameter": 62e-3}
+    known |= {"capacity": 19.5e3, "static_capacity": 11.2e3}
+    for count in (-3, 0, 1):
+        with pytest.raises(ValueError, match=f"count must be at least 2, got {count}"):
+            estimated_balls(**known, count=count)
+    with pytest.raises(ValueError, match="must be those of 14 balls between the rings"):
+        estimated_balls(**known, count=14)
+    for name in ("diameter", "pitch_diameter"):
+        with pytest.raises(TypeError, match=rf"{name} must be left out: .* got 0\.05"):
+            estimated_balls(**known, **{name: 50e-3})  # type: ignore[arg-type]
+    with pytest.warns(nacre.NacreWarning, match="are estimates") as warned:
+        estimated_balls(**known)
+    assert warned[0].filename == __file__
     with pytest.raises(ValueError, match=r"outside_diameter must be finite and above 0\.03"):
         estimated_balls(bore=30e-3, outside_diameter=20e-3, capacity=1e4, static_capacity=1e4)

@@ -138,6 +138,7 @@ def test_texts_are_arguments_of_the_same_solve(kind: str) -> None:
         ("rad/s", "30 min-1", math.pi),
         ("rad/s", "30 min⁻¹", math.pi),
         ("rad/s", "30 rpm", math.pi),
+        ("rad/s", "30 r/min", math.pi),
         ("rad/s", "180 °/s", math.pi),
         ("rad", "180°", math.pi),
         ("rad", "10800'", math.pi),
@@ -164,6 +165,9 @@ def test_a_text_is_the_number_nearest_to_it(unit: str, text: str, number: float)
         ("m", "5"),
         ("m", "5 m m"),
         ("m", "5 mm 3"),
+        ("m", "5 mm 1"),
+        ("m", "5 % m"),
+        ("Pa", "5 1 Pa"),
         ("m", "5 Mm"),
         ("m", "5 MPa"),
         ("m", '5"'),
@@ -187,6 +191,11 @@ def test_a_text_is_the_number_nearest_to_it(unit: str, text: str, number: float)
 def test_other_texts_are_refused_with_the_unit(unit: str, text: str) -> None:
     with pytest.raises(ValueError, match=rf"^must be a number .*{re.escape(unit) or '%'}.*, got"):
         number_in(unit, text)
+
+
+def test_a_comma_is_no_decimal_mark_in_files() -> None:
+    with pytest.raises(ValueError, match=r"got '1,5 mm'; a decimal mark is a point$"):
+        number_in("m", "1,5 mm")
 
 
 CONTACT: dict[str, Any] = {
@@ -250,6 +259,13 @@ REFUSED: list[tuple[dict[str, Any], dict[str, Any], str]] = [
         {"sweep": {"parameters": {"solve.load": ["1 N", "2 m"]}}},
         r"solve\.load\[1\]: .* in N ",
     ),
+    (CONTACT, {"wear": WEAR | {"steps": "10 m"}}, r"wear\.steps: .* an integer .*'10 m'"),
+    (
+        CONTACT,
+        {"sweep": {"parameters": {"solve.load": {"first": 1, "last": 2, "count": "3 N"}}}},
+        r"solve\.load\.count: must be an integer above 0, got '3 N'",
+    ),
+    (CONTACT, {"sweep": {"parameters": {"solve.load": "1 N"}}}, r"a list of values, .*'1 N'"),
     (BEARING, {"bearing.solve.speed": "25 1/s"}, r"bearing\.solve\.speed: .* in rad/s .*'25 1/s'"),
     (BEARING, {"bearing.film.viscosity": "68 cSt"}, r"bearing\.film\.viscosity: .* in MPa s "),
     (BEARING, {"bearing.solve.force": {"x": "10 kg"}}, r"bearing\.solve\.force\.x: .* in N "),

@@ -310,6 +310,7 @@ def array(
 NETCDF = {
     "as it is": array(),
     "y first": array().T,
+    "Y first": array().T.rename(x="X", y="Y"),
     "descending": array(order=-1),
     "in other units": array("nm", "um", 1.0) * 1e9,
     "beside a line": array().to_dataset().assign(line=("x", np.arange(16.0))),
@@ -338,6 +339,8 @@ OF_NETCDF: dict[str, tuple[Any, dict[str, Any], str]] = {
     "two arrays": (TWO_ARRAYS, {}, r"as one of 0 'error' \(16 x 12, in m\), 1 'height' \(16 x"),
     "an unknown channel": (TWO_ARRAYS, {"channel": "z"}, "channel must be one of .* got 'z'"),
     "uneven places": (UNEVEN, {}, "places along x must be on a regular grid"),
+    "a single place": (array(size=0.0), {}, "places along x must be on a regular grid"),
+    "a map of one line": (array()[:, :1], {}, "holds a profile, places beside heights, not a map"),
     "a line": (array()[:, 0], {}, "must hold heights, an array of two dimensions, got none"),
     "words": (array().astype(str), SPACED, "must hold heights, an array of two dimensions"),
 }

@@ -267,7 +267,6 @@ document.addEventListener("keydown", (event) => {
   if (key === "z" && (event.ctrlKey || event.metaKey) && !target.matches("input:not([type=range])")) history.back();
 });
 document.addEventListener("change", ({ target }) => {
-  fresh = true;
   if (target.name === "line") fill(target);
   if (target.dataset.reading) {
     pending.reading[target.dataset.reading] = target.value;
