@@ -94,6 +94,7 @@ def fit_page(fit: Fit) -> Axes:
     rows += ["", *_comparison(fit)]
     with styled():
         figure = plt.figure(figsize=(WIDTH, 1.3 * WIDTH), layout="constrained")
+        upper: Axes
         upper, lower, below = figure.subplots(3, 1, height_ratios=(3, 1.2, 2.6))
         for number in range(len(fit.curves)):
             _draw(fit, upper, number)
