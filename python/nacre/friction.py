@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import xarray
 
 __all__ = ["creep_coefficients", "creep_curve", "history"]
+__dir__ = __all__.copy
 
 
 @frozen()

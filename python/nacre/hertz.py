@@ -15,6 +15,7 @@ from nacre._tools.typing import Field, Matrix, Pair, Vector
 Places = float | Vector | Matrix
 
 __all__ = ["Ellipse", "Line", "Point", "contact_modulus", "equivalent_radius", "relative_radii"]
+__dir__ = __all__.copy
 
 
 def _or_straight(radius: float | None) -> float | None:

@@ -18,6 +18,7 @@ with extra("jax"):
     import jax.numpy as jnp
 
 __all__ = ["Result", "solver"]
+__dir__ = __all__.copy
 
 Product = Callable[[tuple[str, ...], Array, Array], Array]
 Linear: TypeAlias = "Callable[[jax.Array, jax.Array], jax.Array]"

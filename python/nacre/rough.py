@@ -44,6 +44,7 @@ __all__ = [
     "spectrum",
     "windowed",
 ]
+__dir__ = __all__.copy
 
 Array = npt.NDArray[np.float64]
 

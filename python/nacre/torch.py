@@ -14,6 +14,7 @@ with extra("torch"):
     import torch
 
 __all__ = ["Result", "solver"]
+__dir__ = __all__.copy
 
 Value: TypeAlias = "float | Vector | Matrix | torch.Tensor"
 Tensors: TypeAlias = "torch.Tensor | tuple[torch.Tensor, ...]"

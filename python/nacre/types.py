@@ -37,3 +37,4 @@ __all__ = [
     "WearState",
     "WearThrough",
 ]
+__dir__ = __all__.copy

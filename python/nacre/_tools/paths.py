@@ -84,7 +84,8 @@ def by_layer(values: Any) -> Any:
 
     def layer(key: object) -> object:
         match = LAYER.fullmatch(key) if isinstance(key, str) else None
-        name = key if match is None else match[2]
-        return int(name) if match and name.isdecimal() else name
+        if match is None:
+            return key
+        return int(match[2]) if match[2].isdecimal() else match[2]
 
     return {layer(k): v for k, v in values.items()} if isinstance(values, Mapping) else values

@@ -79,6 +79,7 @@ __all__ = [
     "static_rating",
     "stress_volume",
 ]
+__dir__ = __all__.copy
 
 
 def _old(name: str) -> object:

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from nacre.case.file import Case, CaseError
 
 __all__ = ["Case", "CaseError"]
+__dir__ = __all__.copy
 
 
 def _imported(name: str) -> object:

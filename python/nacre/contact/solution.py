@@ -384,10 +384,12 @@ class Solution(NormalContact, Shown, Result):
             ``stress`` (``"xx"`` to ``"xz"``, ``"von_mises"``, ``"principal[0]"``,
             ``"max_shear"``, ``"plane_shear"``), one of ``at=(x, y, z)``, ``layer`` and
             ``interface``, and ``depths``, ``sharpness``, ``side``, ``body``, ``friction`` and
-            ``direction``; or a list of these.
+            ``direction``; or a list of these. ``"peak_pressure"`` is the peak between cells, from
+            which `Solution.peak_pressure` of a cell differs by less than its error.
         wrt : list of str, optional
             Paths of the parameters, such as ``"body.layers[0].material.young"``,
-            ``"shape.radius"`` or ``"load"``; all by default.
+            ``"shape.radius"`` or ``"load"``; all by default. A layer has its number or its name,
+            ``"body.layers.DLC.thickness"``.
         shape : Shape, optional
             Shape that the contact was solved with, which a solution from a file does not know.
         tolerance : float, optional

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import xarray
 
 __all__ = ["Optimum", "coating_chart", "force_table", "load_curve", "optimise", "tilt_curve"]
+__dir__ = __all__.copy
 
 Values = Sequence[float] | npt.NDArray[np.float64]
 

@@ -35,3 +35,4 @@ __all__ = [
     "shakedown",
     "shakedown_map",
 ]
+__dir__ = __all__.copy

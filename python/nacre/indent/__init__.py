@@ -58,3 +58,4 @@ __all__ = [
     "suspicious_units",
     "tabor_parameter",
 ]
+__dir__ = __all__.copy

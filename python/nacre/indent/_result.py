@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.renamed import warn_of
 from nacre._tools.units import written
 from nacre.indent._addressed import System
 from nacre.indent._model import NUISANCES, OF_FORCE, unit_of
@@ -23,7 +24,7 @@ from nacre.indent._verdict import UNFIT, fit_verdict
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import MODEL, holds
-from nacre.results import display
+from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.charts import Axis, Chart
 from nacre.results.charts import Curve as Line
@@ -154,7 +155,8 @@ class Fit(Shown, Result):
 
     @property
     def is_identifiable(self) -> bool:
-        """Whether the data tell all free parameters."""
+        """Whether the data tell all free parameters; deprecated for `identifiable`."""
+        warn_of("is_identifiable", "all(fit.identifiable.values())")
         return not self.reasons
 
     @asked
@@ -206,16 +208,15 @@ class Fit(Shown, Result):
         return indent.fit_plot(self, axes, curve=curve)
 
     def report(self, path: str | os.PathLike[str]) -> None:
-        """Write one page with curves, residuals and the table: PDF, PNG or SVG by the ending.
+        """Write a page; deprecated for `save`."""
+        warn_of("report(path)", "save(path)")
+        self.save(path)
 
-        The ending ``.html`` writes the report of `save`.
-        """
-        if Path(path).suffix.lower() == ".html":
-            self.save(path)
-            return
+    def _writers(self) -> dict[str, Callable[[Path], object]]:
+        """Return the writers by endings; pictures are a page with curves, residuals and table."""
         from nacre.plot import indent
 
-        indent.fit_report(self, path)
+        return super()._writers() | files.pictures(lambda: indent.fit_page(self))
 
     @property
     def _parameter_units(self) -> list[str]:
@@ -286,7 +287,7 @@ class Fit(Shown, Result):
     def __repr__(self) -> str:
         """Return a line with the estimates."""
         estimates_text = ", ".join(f"{name} {self._value(name)}" for name in self.free)
-        verdict = "identifiable" if self.is_identifiable else "not identifiable"
+        verdict = "not identifiable" if self.reasons else "identifiable"
         return f"<Fit of {estimates_text}: {verdict}>"
 
     def _table(self) -> Printed:

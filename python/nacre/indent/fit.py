@@ -157,7 +157,7 @@ def fit(
     >>> guess = nacre.HalfSpace(glass, layers=[nacre.Layer(nacre.Elastic(1e9, 0.3), 2e-6)])
     >>> young = "body.layers[0].material.young"
     >>> found = nacre.indent.fit((depth, made.load * noise), guess, tip, [young])
-    >>> found.is_identifiable, bool(abs(found.estimates[young] / 3e9 - 1) < 0.02)
+    >>> all(found.identifiable.values()), bool(abs(found.estimates[young] / 3e9 - 1) < 0.02)
     (True, True)
     """
     curves = _curves(data)

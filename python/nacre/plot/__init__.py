@@ -50,3 +50,4 @@ __all__ = [
     "view",
     "wear",
 ]
+__dir__ = __all__.copy

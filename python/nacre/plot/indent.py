@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import textwrap
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nacre._core import integer
-from nacre._tools.disk import replacing
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
 from nacre.plot.drawer import draw
@@ -91,20 +88,13 @@ def residuals(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
     return axes
 
 
-def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
-    """Write a page with the data, the residuals, and the table of a fit.
-
-    Parameters
-    ----------
-    fit
-        A fit.
-    path
-        File, whose ending is the format: ``.pdf``, ``.png``, ``.svg``.
-    """
+def fit_page(fit: Fit) -> Axes:
+    """Draw a page with the data, the residuals, and the table of a fit."""
     rows = [row for line in str(fit).splitlines() for row in KEEP.wrap(line)]
     rows += ["", *_comparison(fit)]
     with styled():
         figure = plt.figure(figsize=(WIDTH, 1.3 * WIDTH), layout="constrained")
+        upper: Axes
         upper, lower, below = figure.subplots(3, 1, height_ratios=(3, 1.2, 2.6))
         for number in range(len(fit.curves)):
             _draw(fit, upper, number)
@@ -116,9 +106,7 @@ def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
         size = 0.9 * 72 * WIDTH / (0.6 * LETTERS)
         page_text = below.text(0, 1, "\n".join(rows), size=size, **look)
         page_text.set_in_layout(False)
-        with replacing(Path(path)) as temporary:
-            figure.savefig(temporary)
-        plt.close(figure)
+    return upper
 
 
 def _comparison(fit: Fit) -> list[str]:

@@ -4,3 +4,4 @@ from nacre.surfaces.maps import read_map
 from nacre.surfaces.profiles import read_profile
 
 __all__ = ["read_map", "read_profile"]
+__dir__ = __all__.copy

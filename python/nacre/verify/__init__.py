@@ -17,6 +17,7 @@ from importlib import resources
 from typing import NotRequired, TypedDict
 
 __all__ = ["Row", "names", "rows"]
+__dir__ = __all__.copy
 
 
 @dataclass(frozen=True)

@@ -141,7 +141,7 @@ def test_a_static_safety_decides(
     other = dataclasses.replace(solution, loads=heavier * solution.loads)
     assert other.static_load().safety == pytest.approx(reached * usual)
     assert other.verdict().level == ("bad" if level == "bad" else "unknown")
-    light = dataclasses.replace(borne(kind, TURNING).life(), caution=None)
+    light: Any = dataclasses.replace(borne(kind, TURNING).life(), caution=None)
     asked = dataclasses.replace(other, _life=light).verdict(required_life=light.hours / 20)
     assert asked.level == level
     safety = plain(other.static_load().safety, 3)
@@ -272,7 +272,8 @@ def test_loads_and_tilts_beyond_the_usual_are_told() -> None:
     bearing = DeepGrooveBall(**BALLS)
     heavy = bearing.solve(force=(14e3, 0.0, None), speed=TURNING, model="iso16281")
     assert heavy.life().equivalent_load > 0.5 * heavy.life().capacity
-    verdict = heavy.verdict(required_life=heavy.life().hours / 20)
+    heavy_life: Any = heavy.life()
+    verdict = heavy.verdict(required_life=heavy_life.hours / 20)
     assert "above half of the rating" in str(verdict)
     assert not verdict.inside_model
     rollers = CylindricalRoller(**ROLLERS)
@@ -402,7 +403,7 @@ def test_a_pair_has_the_life_of_both_and_then_the_weaker_bearing() -> None:
     hours = {name: getattr(life, name) / 300 * 2 * math.pi / 3600 for name in ("first", "second")}
     words = solution.verdict().words
     assert words == life.verdict().words
-    assert words.startswith(f"Lives {plain(life.hours, 3)} h (")
+    assert words.startswith(f"Lives {plain(life.hours or 0.0, 3)} h (")
     alone = [f"{name} bearing {plain(hours[name], 3)} h" for name in (shorter, longer)]
     assert words.endswith(f"; {alone[0]}, {alone[1]}.")
     assert life.hours < min(hours.values())

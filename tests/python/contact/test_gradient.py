@@ -176,3 +176,13 @@ def test_gradients_scale_with_all_lengths(scale: float) -> None:
         for path, of in powers.items():
             due = own[path] * scale ** (power_of - of)
             assert scaled[path] == pytest.approx(due, rel=1e-8), (output, path)
+
+
+def test_the_old_name_of_the_peak_warns_and_gives_the_same(solution: nacre.Solution) -> None:
+    peak = solution.gradient("peak_pressure")
+    with pytest.warns(DeprecationWarning, match='write "peak_pressure"'):
+        old = solution.gradient("located_peak")
+    assert old == peak
+    assert old.output == "peak_pressure"
+    error = solution.report.discretisation["peak_pressure"]
+    assert 0 < abs(peak.value / solution.peak_pressure - 1) < error

@@ -98,7 +98,7 @@ def test_what_data_cannot_tell_is_not_identifiable(kind: str) -> None:
     noise = np.exp(0.01 * np.random.default_rng(3).standard_normal(20))
     force = nacre.indent.Indentation(body, TIP).curve(approach=depth).load * noise
     found = fit((depth, force), body, TIP, [PATHS[name] for name in free])
-    assert not found.is_identifiable
+    assert not all(found.identifiable.values())
     assert found.reasons
     assert not any(found.identifiable[PATHS[name]] for name in unknown)
 
@@ -111,7 +111,7 @@ def test_contact_point_and_drift_together_are_not_identifiable() -> None:
 
 
 def test_identifiable_fits_are_not_flagged() -> None:
-    assert all(fitted(case).is_identifiable for case in KNOWN[:2])
+    assert all(all(fitted(case).identifiable.values()) for case in KNOWN[:2])
 
 
 DEPTH = np.linspace(5e-9, 2e-7, 40)
@@ -145,7 +145,7 @@ def test_points_out_of_order_are_named() -> None:
     order = np.random.default_rng(7).permutation(DEPTH.size)
     with pytest.warns(nacre.NacreWarning, match="random order"):
         found = fit((DEPTH[order], noisy(6)[order]), coated(), TIP, [PATHS["lnE1"]])
-    assert found.is_identifiable  # the order does not matter without drift
+    assert all(found.identifiable.values())  # the order does not matter without drift
 
 
 @pytest.mark.filterwarnings("ignore:the model does not describe")
@@ -230,7 +230,7 @@ def test_a_radius_trades_with_the_modulus_without_a_prior() -> None:
     assert not any(found.identifiable.values())
     assert "trades with tip.radius" in found.reasons["body.substrate.young"]
     known = fit((DEPTH, force), steel, TIP, free, prior={"tip.radius": (1e-5, 2e-7)})
-    assert known.is_identifiable
+    assert all(known.identifiable.values())
     # The force goes with √R: 2 % of R are 1 % of E, beside 0.16 % by the noise.
     assert known.standard_errors["body.substrate.young"] / 210e9 == pytest.approx(0.0101, rel=0.05)
 
@@ -253,7 +253,7 @@ def test_fits_are_drawn(tmp_path: Path) -> None:
     assert axes.get_ylabel().startswith("force [")
     assert len(axes.figure.axes) == 2
     for name in ("page.pdf", "page.png"):
-        found.report(tmp_path / name)
+        found.save(tmp_path / name)
         assert (tmp_path / name).stat().st_size > 5000
     pyplot.close("all")
 
@@ -318,3 +318,14 @@ def test_another_minimum_fits_as_well_up_to_the_95_per_cent_of_one_parameter(
     minima = [(np.array([1.0]), 7.0 + 2.0 * apart)]
     told = reasons(model, best, {unknown.name: (-0.0196, 0.0196)}, minima)
     assert ("another minimum, at 2.718" in "".join(told.values())) == fits
+
+
+def test_the_old_names_warn_and_give_the_same(tmp_path: Path) -> None:
+    found = fit((DEPTH, noisy(6)), coated(), TIP, [PATHS["lnE1"]])
+    with pytest.warns(DeprecationWarning, match=r"write all\(fit\.identifiable\.values\(\)\)"):
+        assert found.is_identifiable == all(found.identifiable.values())
+    with pytest.warns(DeprecationWarning, match=r"write save\(path\)"):
+        found.report(tmp_path / "old.html")
+    found.save(tmp_path / "new.html")
+    assert (tmp_path / "old.html").stat().st_size > 5000
+    assert (tmp_path / "new.html").stat().st_size > 5000

@@ -172,5 +172,5 @@ def test_a_report_says_that_no_elastic_formula_is_for_an_unloading(tmp_path: Pat
         wrong = fit(unloading(points=40), glass, BERKOVICH, ["body.substrate.young"], profile=False)
     with pytest.raises(ValueError, match="oliver_pharr"):
         wrong.classical()
-    wrong.report(tmp_path / "a.svg")
+    wrong.save(tmp_path / "a.svg")
     assert (tmp_path / "a.svg").stat().st_size > 0

@@ -742,13 +742,13 @@ def test_labels_with_markup_are_text() -> None:
 
 def test_fits_report_to_html_or_as_a_picture(tmp_path: Path) -> None:
     fit = results.solved("fit")
-    fit.report(tmp_path / "a.html")
+    fit.save(tmp_path / "a.html")
     read = Page(tmp_path / "a.html")
     check_safe(read)
     digest = hashlib.sha256(fit.curves[0].force.tobytes()).hexdigest()
     assert f"curve 1, force</td><td>12 numbers, SHA-256 {digest}" in read.source
     assert "± " in read.text
-    fit.report(tmp_path / "a.pdf")
+    fit.save(tmp_path / "a.pdf")
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
 
 
