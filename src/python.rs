@@ -76,7 +76,8 @@ mod core {
         shapes::register(module)?;
         module.add("RIGID", bodies::rigid(module.py())?)?;
         module.add("FREE", bodies::free(module.py())?)?;
-        module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        // As Python writes it, and maturin: 0.2.0-dev is 0.2.0.dev0.
+        module.add("__version__", env!("CARGO_PKG_VERSION").replace("-dev", ".dev0"))?;
         // Not among the public names.
         module.setattr("Rigid", module.py().get_type::<PyRigid>())?;
         module.setattr("Free", module.py().get_type::<PyFree>())?;

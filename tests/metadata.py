@@ -67,6 +67,11 @@ def violations(root: Path = ROOT) -> Iterator[str]:
         match = re.search(rf"^{key}: (.+)$", citation, flags=re.MULTILINE)
         return match[1] if match else None
 
+    released = re.findall(r"^## \[(\d[^\]]*)\]", changes, flags=re.MULTILINE)
+    if version.endswith("-dev"):  # the state after a release, which is the one to cite
+        if version.removesuffix("-dev") in released:
+            yield f"Cargo.toml: version must be after {released[0]}, got {version}"
+        version = released[0]
     if cited("version") != version:
         yield f"CITATION.cff: version must be {version}, got {cited('version')}"
     dated = re.search(rf"^## \[{re.escape(version)}\] - (\S+)$", changes, flags=re.MULTILINE)

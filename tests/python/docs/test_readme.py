@@ -24,7 +24,7 @@ CELLS = "grid=nacre.Grid((64, 32), (30e-3, 160e-6))"
 PRESSED = f"roller, body, load=1e3, {CELLS}"
 RUBBED = f"roller, body, body, load=1e3, {CELLS}"
 PROFILE = (
-    '{"shape": roller, "body": body}, {"shape.crown_radius": 7.5}, objective="located_peak",'
+    '{"shape": roller, "body": body}, {"shape.crown_radius": 7.5}, objective="peak_pressure",'
     f' cases=[{{"load": 1e3}}], bounds={{"shape.crown_radius": (5.0, 10.0)}}, {CELLS}'
 )
 STUDY = (
@@ -55,7 +55,7 @@ ROWS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("values[1].estimates[young] / 420e9",),
     ),
     "differentiate a": (
-        ('"located_peak"', PROFILE),
+        ('"peak_pressure"', PROFILE),
         ("list(values[0].values())", "list(values[1].values.values())"),
     ),
     "read a": ((), ("values[0].heights",)),

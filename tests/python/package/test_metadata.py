@@ -41,16 +41,23 @@ def test_all_places_agree(metadata: Any) -> None:
     [
         (
             "Cargo.toml",
-            'version = "0.1.0"',
+            'version = "0.2.0-dev"',
             'version = "0.2.0"',
             "version must be 0.2.0, got 0.1.0",
         ),
+        (
+            "Cargo.toml",
+            'version = "0.2.0-dev"',
+            'version = "0.1.0-dev"',
+            "version must be after 0.1.0, got 0.1.0-dev",
+        ),
+        ("CITATION.cff", "version: 0.1.0", "version: 0.2.0", "version must be 0.1.0, got 0.2.0"),
         ("Cargo.toml", "The nacre developers", "A. Author", r"authors must be \['A. Author'\]"),
         ("Cargo.toml", ".invalid/", ".invalid/other/", "CITATION.cff: must name"),
         ("SECURITY.md", "project-url", "another", "SECURITY.md: must name"),
         ("pyproject.toml", "project-url", "another", "address of Repository must begin"),
         ("CITATION.cff", "The nacre developers", "Nobody", "CITATION.cff: authors must be"),
-        ("CHANGELOG.md", "## [0.1.0]", "## [0.1.0] - 2027-01-02", "must be 2027-01-02"),
+        ("CHANGELOG.md", "2026-11-25", "2027-01-02", "must be 2027-01-02"),
     ],
 )
 def test_what_disagrees_is_named(
