@@ -54,7 +54,8 @@ def toml(**keys: Any) -> str:
     """Return the template with other keys of wear."""
     lines = "\n".join(f"{name} = {json.dumps(value)}" for name, value in keys.items())
     text = templates.texts()["wear"].replace("cells = 129", "cells = 65")
-    return re.sub(r"sliding.*\n.*\n.*", lines, text) if keys else text
+    text = re.sub(r"\nrequired_distance.*", "", text)
+    return re.sub(r"sliding.*\n.*", lines, text) if keys else text
 
 
 def worn(solved: Case) -> nacre.types.WearHistory:
