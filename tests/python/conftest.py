@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 os.environ.setdefault("MPLBACKEND", "agg")  # pictures are drawn without a screen
+os.environ["COLUMNS"] = "1000"  # what commands print is compared with what Python prints
 SLOW = """
 docs examples functions fuzz fuzz_contacts fuzz_ends fuzz_files fuzz_fits fuzz_indent
 indent_extremes indent_fit indent_residuals notebook optimise paper peers rough stress_ends

@@ -164,6 +164,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[[bearing.life.spectrum]]`", definitions["Duty"]
     yield "`[bearing.film]`", definitions["BearingFilm"]
     yield "`[sweep]`", definitions["Sweep"]
+    yield "`[report]`", definitions["Head"]
     yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', definitions["Range"]
 
 

@@ -34,6 +34,7 @@ def wear(**keys: Any) -> dict[str, Any]:
     """Return the template of wear on few cells, with other keys of wear."""
     data = tomllib.loads(templates.texts()["wear"])
     data["grid"]["cells"] = 65
+    data["wear"].pop("required_distance")
     data["wear"] |= keys
     return data
 
