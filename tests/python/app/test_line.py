@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from nacre.app.answer import answer, file_text
 from nacre.app.cards import cards
-from nacre.app.line import BORES, GRADES, SYMBOLS, filled, read, with_note
+from nacre.app.line import SYMBOLS, TABLES, filled, read, with_note
 from nacre.bearing import check
 from nacre.bearing.modified import SMALL
 from support import assert_close, fuzz
@@ -50,6 +50,8 @@ ASKED = [
     ("C0 kN", "C0 kN", {}),
     ("idle for 20000 h", "idle for 20000 h", {}),
     ("25 degrees, 90 s, 0.3", "90 s", {}),
+    ("N 1500, Fr 2 kN", "N 1500", {"Fr": 2e3}),
+    ("Z 9.5, n 1500 hm", "Z 9.5", {}),
 ]
 """Lines, words of which are asked, and the numbers that are understood all the same."""
 
@@ -175,7 +177,7 @@ def test_an_estimate_is_marked_until_it_is_replaced() -> None:
 
 def test_symbols_have_fields() -> None:
     fields = {path for name in ("bearing", "ball-bearing") for path in cards()[name].by_path}
-    without = {name for name, symbol in SYMBOLS.items() if symbol.target not in fields}
+    without = {name for name, symbol in SYMBOLS.items() if symbol.get("target") not in fields}
     assert without <= {"C", "C0", "d", "D", "B", "VG", "T", "cleanliness"}
-    assert list(GRADES) == sorted(GRADES)
-    assert sorted(BORES.values()) == list(BORES.values())
+    for sizes in (*TABLES["outside"].values(), *TABLES["grades"].values()):
+        assert sizes == sorted(sizes)
