@@ -213,6 +213,10 @@ def filled(text: str, cards: Mapping[str, Card], current: str) -> Filled:
             values[field.path] = typed
         except FieldError as error:
             asked.append(str(error))
+    targets = {SYMBOLS[symbol].get("target") for symbol in SYMBOLS.keys() - line.values.keys()}
+    kept = [field.label for field in card.fields if field.path in targets - {"bearing.count"}]
+    if line.values and kept:
+        asked.append(f"not in the line, and left as it is: {', '.join(kept)}")
     estimated, note = dict[str, str](), ""
     try:
         estimated, note = _estimate(line, card)
