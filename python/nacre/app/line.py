@@ -3,58 +3,26 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from nacre._tools.markup import text_of
 from nacre._tools.notices import heard
 from nacre._tools.units import number_in
 from nacre.app.answer import Measured
-from nacre.app.cards import Card
+from nacre.app.cards import MOST, Card
 from nacre.app.fields import Field, FieldError
 from nacre.bearing import check, estimated_balls
 from nacre.bearing.modified import SMALL
 from nacre.results.rows import remark
 
-
-class Symbol(NamedTuple):
-    """A quantity that a line may have."""
-
-    unit: str
-    """Unit of its number."""
-    keys: str
-    """Words before its number."""
-    certain: str = ""
-    """Unit of a number that is typed without one; "" where a unit must be typed."""
-    target: str = ""
-    """Path of its field."""
-
-
-SYMBOLS = {
-    "C": Symbol("N", "C Cr C_r"),
-    "C0": Symbol("N", "C0 C_0 C0r C_0r Cor Co C₀"),
-    "Fr": Symbol("N", "Fr F_r radial", target="bearing.solve.force.x"),
-    "Fa": Symbol("N", "Fa F_a axial", target="bearing.solve.force.z"),
-    "n": Symbol("rad/s", "n speed Drehzahl", "1/min", target="bearing.solve.speed"),
-    "d": Symbol("m", "d", "mm"),
-    "D": Symbol("m", "D", "mm"),
-    "B": Symbol("m", "B", "mm"),
-    "Z": Symbol("", "Z count", "1", target="bearing.count"),
-    "VG": Symbol("", "VG ISO\\sVG ISO-VG", "1", target="bearing.oil.grade"),
-    "T": Symbol("°C", "T temperature Temperatur", target="bearing.oil.temperature"),
-    "life": Symbol("h", "life L L10 L10h Lh Lebensdauer", "h", target="bearing.life.required_life"),
-    "tilt": Symbol("rad", "tilt misalignment", target="bearing.solve.tilt.y"),
-    "cleanliness": Symbol("", "", target="bearing.oil.cleanliness"),
-}
-"""Quantities of a line by their names."""
-SPELLINGS = {"r/min": "1/min", "rev/min": "1/min", "hours": "h", "Std": "h", "degC": "°C"}
-"""Units in other spellings."""
-CERTAIN = {"n": ("/min", "1/min", "rpm", "U/min", "min-1", "min⁻¹"), "life": ("h",), "T": ("°C",)}
-"""Units that say which quantity a number is."""
-GRADES = (2, 3, 5, 7, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200)
-"""Viscosity grades of ISO 3448."""
-NEEDED = {
-    **{"C": "capacity", "C0": "static_capacity", "d": "bore", "D": "outside_diameter"},
-}
+TABLES: dict[str, dict[str, Any]] = tomllib.loads(text_of("nacre.app", "line.toml"))
+"""Symbols, units and dimensions of bearings."""
+SYMBOLS = TABLES["symbols"]
+BY_KEY = {key: name for name, symbol in SYMBOLS.items() for key in symbol.get("keys", ())}
+"""Names of symbols by the words before their numbers."""
+NEEDED = dict(C="capacity", C0="static_capacity", d="bore", D="outside_diameter")
 """Arguments from which balls are estimated, by symbol."""
 ESTIMATED = ("count", "diameter", "pitch_diameter")
 """Arguments of a bearing that are estimated."""
@@ -67,7 +35,7 @@ LINES = ("bearing", "ball-bearing")
 LONGEST = 300
 """Largest number of characters of a line."""
 NUMBER = r"[-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?(?![\d.,])"
-KEYS = "|".join(sorted((k for s in SYMBOLS.values() for k in s.keys.split()), key=len)[::-1])
+KEYS = "|".join(sorted(BY_KEY, key=len, reverse=True))
 ITEM = re.compile(
     rf"(?:(?P<key>{KEYS})\s*[=:]?\s*)?(?P<number>{NUMBER})(?:(?P<gap>\s*)(?P<unit>1/\S+|[^\s\d]\S*))?"
 )
@@ -75,33 +43,21 @@ ITEM = re.compile(
 THOUSANDS = re.compile(r"(?<![\w.,])(?:[1-9]\d{0,2}[.,]\d{3}(?!\d)|\d{1,3}(?:\s\d{3})+(?!\S*\d))")
 """Numbers in which a mark or a blank may be one of thousands: 14.800, 1 500."""
 DESIGNATION = re.compile(
-    r"(?P<rollers>NUP|NU|NJ|NF|N)?[ -]?(?P<code>\d{3,5})(?P<suffix>[-/]?[A-Z\d][\w/-]*)?"
-    r"(?P<more>(?: (?:C[2-5]|CN|2?RS\d?|2Z|ZZ|EC[PJM]?))*)(?!\S)"
+    r"(?:(?P<rollers>NUP|NU|NJ|NF|N)[ -]?(?P<size>(?:10|2[23]?|3|4)\d\d)|(?P<code>\d{3,5}))(?!\d)"
+    r"(?:[-/]?[A-Z\d][\w/-]*)?(?: (?:C[2-5]|CN|2?RS\d?|2Z|ZZ|EC[PJM]?))*(?!\S)"
 )
 """Designation of a bearing, with its suffixes."""
 DEEP_GROOVE = re.compile(r"(?:6[0234]|16[01]|6[123]\d)\d\d|6[0-3][1-9]")
 """Designations of deep-groove ball bearings."""
-BORES = {"00": 10, "01": 12, "02": 15, "03": 17}
-"""Bores of the first codes [mm], as DIN 623-1 and catalogues have them; others are five times the
-code."""
-OUTSIDE = {
-    "60": "26 28 32 35 42 47 55 62 68 75 80 90 95 100 110 115 125 130 140 145 150",
-    "62": "30 32 35 40 47 52 62 72 80 85 90 100 110 120 125 130 140 150 160 170 180",
-    "63": "35 37 42 47 52 62 72 80 90 100 110 120 130 140 150 160 170 180 190 200 215",
-}
-"""Outside diameters by series and bore code 00 to 20 [mm]: diameter series 0, 2 and 3 of ISO 15, as
-tables of NTN (CAT. No. 2203) and INA quote them."""
 
 
 class Line(NamedTuple):
     """What a line says, and what it does not say clearly."""
 
     designation: str
-    """Designation without its suffixes, or ""."""
-    is_roller: bool
-    """Whether the designation is that of a cylindrical roller bearing."""
+    """Designation without its suffixes, or ""; those of rollers begin with a letter."""
     values: dict[str, float | str]
-    """Numbers in the units of `SYMBOLS`, and the word for the cleanliness, by symbol."""
+    """Numbers in the units of line.toml, and the word for the cleanliness, by symbol."""
     asked: list[str]
     """Sentences on what was not understood, or is missing."""
 
@@ -144,7 +100,7 @@ def read(text: str) -> Line:
     >>> line.designation, line.values["C"], line.asked
     ('6205', 14800.0, ['not understood: "about 2 kN"'])
     """
-    line = Line("", False, {}, [])
+    line = Line("", {}, [])
     if len(text) > LONGEST:
         return line._replace(asked=[f"a line has at most {LONGEST} characters"])
     is_first = True
@@ -167,10 +123,10 @@ def read(text: str) -> Line:
                 continue
             for name, value in known.items():
                 if name == "designation":
-                    line = line._replace(designation=str(value), is_roller=known["is_roller"] == 1)
+                    line = line._replace(designation=str(value))
                 elif name in line.values:
                     line.asked.append(f"{name} is given twice: {piece} was left out")
-                elif name in SYMBOLS:
+                else:
                     line.values[name] = value
         unknown = " ".join(piece for piece, known in pieces if not known)
         if unknown:
@@ -191,7 +147,8 @@ def _pieces(part: str, is_first: bool) -> Iterator[tuple[str, dict[str, float | 
             length, known = _item(rest)
             named = DESIGNATION.match(rest)
             if known is None and named and (named["rollers"] or (is_first and at == 0)):
-                length, known = named.end(), _designation(named)
+                name = f"{named['rollers']} {named['size']}" if named["rollers"] else named["code"]
+                length, known = named.end(), {"designation": name}
         length = length or len(rest.split(" ")[0])
         yield rest[:length], known
         at += length + (part[at + length : at + length + 1] == " ")
@@ -203,14 +160,9 @@ def _item(rest: str) -> tuple[int, dict[str, float | str] | None]:
     if found is None:
         return 0, None
     number, unit = found["number"].replace(",", "."), found["unit"] or ""
-    unit = SPELLINGS.get(unit, unit)
-    if found["key"]:
-        key = re.sub(r"\s", "\\\\s", found["key"])
-        name = next(name for name, symbol in SYMBOLS.items() if key in symbol.keys.split())
-        certain = SYMBOLS[name].certain
-    else:
-        name = next((name for name, units in CERTAIN.items() if unit in units), "")
-        certain = ""
+    unit = str(TABLES["spellings"].get(unit, unit))
+    name = BY_KEY[found["key"]] if found["key"] else TABLES["names"].get(unit, "")
+    certain = SYMBOLS[name].get("certain", "") if found["key"] else ""
     if not name:
         return 0, None
     value = _value(name, f"{number} {unit}") if unit else None
@@ -227,17 +179,13 @@ def _value(name: str, text: str) -> float | None:
     try:
         if name == "T":
             return float(text.removesuffix("°C")) if text.endswith("°C") else None
-        if not SYMBOLS[name].unit:
-            return float(text) if float(text) in (GRADES if name == "VG" else range(1000)) else None
-        value = number_in(SYMBOLS[name].unit, text)
+        if not (unit := SYMBOLS[name].get("unit")):
+            allowed = TABLES["grades"].get(name, range(1, MOST["elements"] + 1))
+            return float(text) if float(text) in allowed else None
+        value = number_in(unit, text)
     except ValueError:
         return None
     return value if value > 0 or (name in ("Fa", "tilt") and value == 0) else None
-
-
-def _designation(found: re.Match[str]) -> dict[str, float | str]:
-    name = f"{found['rollers'] or ''} {found['code']}".strip()
-    return {"designation": name, "is_roller": float(bool(found["rollers"]))}
 
 
 def filled(text: str, cards: Mapping[str, Card], current: str) -> Filled:
@@ -247,23 +195,28 @@ def filled(text: str, cards: Mapping[str, Card], current: str) -> Filled:
     """
     line = read(text)
     asked, values, name = line.asked, dict[str, str](), line.designation
-    if name and not (line.is_roller or DEEP_GROOVE.fullmatch(name)):
+    is_roller = name[:1].isalpha()
+    if name and not (is_roller or DEEP_GROOVE.fullmatch(name)):
         kinds = "deep-groove ball bearings and cylindrical roller bearings"
         asked.append(f"the page has cards of {kinds}, and none of a {name}: nothing is filled in")
         return Filled(current, {}, {}, "", asked)
-    card = cards[("bearing" if line.is_roller else "ball-bearing") if name else current]
+    card = cards[("bearing" if is_roller else "ball-bearing") if name else current]
     for symbol, value in line.values.items():
-        if not (target := SYMBOLS[symbol].target):
+        if not (target := SYMBOLS[symbol].get("target")):
             continue
         if (field := card.by_path.get(target)) is None:
             asked.append(f"{symbol} was left out: the card has no field for it")
             continue
         try:
-            typed = _typed(field, value, SYMBOLS[symbol].unit)
+            typed = _typed(field, value, SYMBOLS[symbol].get("unit", ""))
             field.number(typed)
             values[field.path] = typed
         except FieldError as error:
             asked.append(str(error))
+    targets = {SYMBOLS[symbol].get("target") for symbol in SYMBOLS.keys() - line.values.keys()}
+    kept = [field.label for field in card.fields if field.path in targets - {"bearing.count"}]
+    if line.values and kept:
+        asked.append(f"not in the line, and left as it is: {', '.join(kept)}")
     estimated, note = dict[str, str](), ""
     try:
         estimated, note = _estimate(line, card)
@@ -307,7 +260,7 @@ def _estimate(line: Line, card: Card) -> tuple[dict[str, str], str]:
     known |= {name: float(line.values[name]) for name in NEEDED if name in line.values}
     if not known and not line.designation:
         return {}, ""
-    if line.is_roller or card.name != "ball-bearing":
+    if line.designation[:1].isalpha() or card.name != "ball-bearing":
         raise ValueError("number and size of rollers do not follow from the ratings")
     for name, size in sizes.items():
         if abs(known[name] - size) > TINY:
@@ -334,6 +287,6 @@ def _dimensions(designation: str) -> dict[str, float]:
         return {}
     if len(designation) == SHORT:
         return {"d": int(designation[-1]) * 1e-3}
-    outside = OUTSIDE.get(series, "").split()[int(code) : int(code) + 1]
-    bore = {"d": BORES.get(code, 5 * int(code)) * 1e-3}
-    return bore | ({"D": int(outside[0]) * 1e-3} if outside else {})
+    sizes = TABLES["outside"].get(series, ())[int(code) : int(code) + 1]
+    bore = TABLES["bores"].get(code, 5 * int(code))
+    return {"d": bore * 1e-3} | ({"D": sizes[0] * 1e-3} if sizes else {})

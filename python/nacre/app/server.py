@@ -139,7 +139,7 @@ class Server(ThreadingHTTPServer):
         values = dict(question["values"])
         text = str(values.pop("line", ""))
         try:
-            card = opened_card(sent) if sent else self.cards[question["card"]]
+            card = opened_card(sent) if sent is not None else self.cards[question["card"]]
             if stage == "open":
                 return {**opened(card)}
             if stage == "line":
@@ -156,7 +156,7 @@ class Server(ThreadingHTTPServer):
         except Stopped:
             return {"stopped": True}
         finally:
-            if sent:  # nothing of these files is kept
+            if sent is not None:  # nothing of these files is kept
                 forget()
 
     def content(self, question: Mapping[str, Any]) -> bytes:

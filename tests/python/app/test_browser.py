@@ -6,6 +6,7 @@ Left out where the system has no Chromium.
 from __future__ import annotations
 
 import datetime
+import hashlib
 import json
 import re
 import shutil
@@ -440,3 +441,47 @@ def test_a_line_of_text_fills_the_card(browser: Any, url: str, tmp_path: Path) -
     assert "are estimates" not in str(again.at("warnings").text_content())
     again.close()
     page.close()
+
+
+def test_files_are_opened_and_asked_about(opened: Opened, tmp_path: Path) -> None:
+    page, error = opened.page, opened.page.locator(".error")
+    heights = "\n".join(
+        " ".join(str((i - 8) ** 2 + (k - 8) ** 2) for k in range(16)) for i in range(16)
+    )
+    path = tmp_path / "map.txt"
+    path.write_text(heights, encoding="utf-8")
+    page.locator("[type=file]").set_input_files(path)
+    sync_api.expect(error).to_contain_text("kind must be chosen")
+    opened.at("reading:kind").select_option("height_map")
+    for key, text in {"unit": "nm", "spacing": "0.5 µm"}.items():
+        opened.at(f"reading:{key}").fill(text)
+        opened.at(f"reading:{key}").press("Enter")
+    opened.page.wait_for_selector('[data-testid="card:own"]', timeout=SECONDS)
+    opened.wait()
+    assert error.is_hidden()
+    assert page.locator("[data-reading]:visible").count() == 0
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    assert f"# map.txt: SHA-256 {digest}" in saved(opened, "case-file", tmp_path).read_text("utf-8")
+    assert digest in saved(opened, "report", tmp_path).read_text("utf-8")
+    opened.at("card:indentation").click()
+    opened.wait()
+    opened.at("card:own").click()  # is still there
+    before = opened.wait()
+    opened.type("solve.load", "1e-3")
+    assert opened.wait("busy", "done") != before
+
+
+def test_a_case_is_dropped_and_a_large_file_is_refused(opened: Opened, tmp_path: Path) -> None:
+    text = templates.texts()["cone"]
+    drop = opened.page.evaluate_handle(
+        "text => { const list = new DataTransfer();"
+        " list.items.add(new File([text], 'mine.toml')); return list; }",
+        text,
+    )
+    opened.page.dispatch_event("main", "drop", {"dataTransfer": drop})
+    opened.page.wait_for_selector('[data-testid="card:own"]', timeout=SECONDS)
+    opened.wait()
+    large = tmp_path / "large.npy"
+    large.write_bytes(bytes(10_000_001))
+    opened.page.locator("[type=file]").set_input_files(large)
+    sync_api.expect(opened.page.locator(".error")).to_contain_text("at most 10 MB")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import http.client
 import json
 import re
@@ -20,9 +21,10 @@ from unittest import mock
 import pytest
 
 from nacre.app import server as module
-from nacre.app.answer import Stopped, answer
+from nacre.app.answer import Stopped, _recent, answer
 from nacre.app.cards import cards
 from nacre.app.server import HEADERS, MOST_BYTES, MOST_PAGES, Server, open_server
+from nacre.case import templates
 from support import Capture, Patch, command
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
@@ -392,6 +394,23 @@ def test_nothing_is_read_or_written(server: Server, monkeypatch: Patch) -> None:
     for path, stage in (("/answer", "draft"), ("/answer", "case"), ("/report", "report")):
         code, reply = post(server, question(card="indentation", stage=stage), path)
         assert (code, reply.get("error")) == (200, None)
+
+
+def test_nothing_of_a_file_is_kept(server: Server) -> None:
+    text = templates.texts()["contact"].encode()
+    contents = {"mine.toml": base64.b64encode(text).decode()}
+    files = {"contents": contents, "reading": {}}
+    reply = post(server, question(card="own", stage="open", files=files))[1]
+    assert 'name="own"' in reply["form"]
+    code, reply = post(server, question(card="own", files=files))
+    assert (code, "parts" in reply) == (200, True)
+    assert _recent.cache_info().currsize == 0
+    assert "own" not in server.cards
+    for changed in ({"card": "contact"}, {"files": []}, {"files": None}, {"more": 1}):
+        refused = {"card": "own", "files": files} | changed
+        assert post(server, question(**refused))[0] == 400
+    empty = post(server, question(card="own", stage="open", files={}))[1]
+    assert empty["error"] == "files must be sent as the page sends them"
 
 
 def test_a_port_that_is_taken_is_passed_over(server: Server) -> None:

@@ -201,6 +201,7 @@ async function load() {
   tell(problem, error);
   if (ask) one(`[data-reading="${ask}"]`).parentElement.hidden = false;
   if (!html) return;
+  tell(note);
   sent = pending;
   document.forms.namedItem("own")?.remove();
   one('[data-group="own file"]')?.remove();
