@@ -572,7 +572,7 @@ def _pressures(**contacts: Contact | StressPlan | None) -> str:
         difference = pressure - np.interp(x, beside, second)
         if np.abs(difference).max() < LINE_WIDTH * pressure.max():
             alone = _drawn(f"{caption}, {name}.", places, PRESSURE, {name: curves[name]})
-            words = f"Pressure, {name} less {other}: no line's width of the pressure itself."
+            words = f"Difference of the pressures, {name} less {other}, too small for one picture."
             axis_of = Axis("difference", "Pa")
             return alone + _drawn(words, places, axis_of, {name: (x, difference)})
     return _drawn(f"{caption}.", places, PRESSURE, curves)
