@@ -542,6 +542,27 @@ def highest(picture: str, names: list[str], top: float) -> list[float]:
     return [top * one / max(above) for one in above]
 
 
+def test_pressures_that_one_picture_cannot_tell_apart_have_their_difference() -> None:
+    for thickness, is_same in (("0.5", True), ("40", False)):
+        values = {"body.layers[0].thickness": thickness, "materials.coating.young": "400"}
+        case = cards()["contact"].case(values)
+        picture = answer(case, "full")["parts"]["picture-1"]
+        assert ("Difference of the pressures, coated less bare" in picture) == is_same
+        assert (picture.count("<figure>") == 2) == is_same
+
+
+def test_bars_of_loads_end_at_a_labelled_ring() -> None:
+    parts = answer(cards()["ball-bearing"].case({}), "draft", shown={"N": "kN"})["parts"]
+    ring = parts["picture-2"]
+    largest = re.findall(r"largest load</th><td>([\d.]+) kN", parts["rows"])[0]
+    assert f">largest {float(largest):.3g}<" in ring
+    radii = [float(radius) for radius in re.findall(r"<circle class='frame'[^>]* r='([\d.]+)'", ring)]
+    x, y = map(float, re.findall(r"<circle class='frame' cx='([\d.]+)' cy='([\d.]+)'", ring)[0])
+    bars = re.findall(r"<path class='c\d' [^>]* d='M[\d. ]+L([\d.]+) ([\d.]+)'", ring)
+    ends = [math.hypot(float(a) - x, float(b) - y) for a, b in bars]
+    assert max(ends) == pytest.approx(max(radii), abs=0.2)
+
+
 def test_stages_share_their_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
     """Coats of one bare body share it, too."""
     solve, solved = nacre.solve, []
