@@ -372,7 +372,15 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     rows += _selected(results.get("film"), FILM_ROWS)
     is_tilted = any(arguments.get("tilt") or ())
     if isinstance(solution, PairSolution):
-        pictures = [_figure(member._ring_chart()) for member in solution.bearings]
+        rings = [member._ring_chart() for member in solution.bearings]
+        pictures = [
+            _figure(
+                ring._replace(
+                    caption=f"{name} bearing: {ring.caption[0].lower()}{ring.caption[1:]}"
+                )
+            )
+            for name, ring in zip(("First", "Second"), rings, strict=True)
+        ]
     else:
         profiles = {"as it stands": _profile(solution)}
         if is_tilted and stage != "full":

@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import reduce
+from itertools import pairwise
 from operator import getitem
 from typing import Any, NamedTuple
 
@@ -201,6 +202,6 @@ def label_of(keys: Sequence[Any], quantity: str, labels: Mapping[str, str]) -> s
     if keys[0] == "materials":
         words.append(f"of {keys[1]}")
     words += [f"of the {key} bearing" for key in keys if key in ("first", "second")]
-    members = zip(keys, keys[1:], strict=False)
+    members = pairwise(keys)
     words += [f"of {PARTS[key]} {item + 1}" for key, item in members if key in PARTS]
     return " ".join(words)

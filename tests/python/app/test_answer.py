@@ -556,7 +556,9 @@ def test_bars_of_loads_end_at_a_labelled_ring() -> None:
     ring = parts["picture-2"]
     largest = re.findall(r"largest load</th><td>([\d.]+) kN", parts["rows"])[0]
     assert f">largest {float(largest):.3g}<" in ring
-    radii = [float(radius) for radius in re.findall(r"<circle class='frame'[^>]* r='([\d.]+)'", ring)]
+    radii = [
+        float(radius) for radius in re.findall(r"<circle class='frame'[^>]* r='([\d.]+)'", ring)
+    ]
     x, y = map(float, re.findall(r"<circle class='frame' cx='([\d.]+)' cy='([\d.]+)'", ring)[0])
     bars = re.findall(r"<path class='c\d' [^>]* d='M[\d. ]+L([\d.]+) ([\d.]+)'", ring)
     ends = [math.hypot(float(a) - x, float(b) - y) for a, b in bars]
