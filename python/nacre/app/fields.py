@@ -148,7 +148,7 @@ def entry_at(data: Any, path: str) -> Any:
 def field_of(
     data: Mapping[str, Any],
     path: str,
-    texts: Mapping[str, Any],
+    texts: Mapping[str, Any] | None = None,
     has_units: bool = True,
     **own: Any,
 ) -> Field:
@@ -156,6 +156,7 @@ def field_of(
 
     `texts` are labels, units and helps by names of quantities, in place of those of the schema.
     """
+    texts = {"labels": {}, "units": {}, "help": {}, **(texts or {})}
     keys, units = keys_of(path), data.get("units", "SI")
     names = [key for key in keys if isinstance(key, str)]
     node = place(data, keys).node
