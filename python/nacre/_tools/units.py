@@ -281,7 +281,7 @@ def _hold(units: System) -> None:
         _thread.system = units
 
 
-_chosen: ContextVar[Mapping[str, str]] = ContextVar("units of numbers by dimension", default={})
+_chosen: ContextVar[Mapping[str, str] | None] = ContextVar("units of numbers", default=None)
 """Units in which numbers are printed, by their SI units, in place of those that are readable."""
 
 
@@ -438,7 +438,7 @@ class Scale:
             or dimension.startswith(("1", "kg", "m²/N"))
         ):
             return cls(1.0, own)  # nobody writes k1/m, kkg or nm²/N
-        if (unit_chosen := _chosen.get().get(dimension)) is not None:
+        if (unit_chosen := (_chosen.get() or {}).get(dimension)) is not None:
             known = size_of(unit_chosen)
             assert known is not None
             return cls(size / known[1], unit_chosen)

@@ -74,7 +74,7 @@ RECENT = 4
 EVERY = 3
 """Loads of which one is in a draft of an indentation."""
 CONTACT_ROWS = {"load", "approach", "tilt", "peak_pressure", "contact_extent", "contact_area"}
-CONTACT_ROWS |= {"force", "torque", "shift", "creepage", "spin"}
+CONTACT_ROWS |= {"force", "shift", "creepage"}
 BEARING_ROWS = {"displacement", "tilt", "largest_load", "peak_pressure", "edge_pressure", "loaded"}
 BEARING_ROWS |= {"first_bearing", "second_bearing"}
 FILM_ROWS = {"central", "minimum", "film_ratio"}
@@ -380,7 +380,15 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     rows += _selected(results.get("film"), FILM_ROWS)
     is_tilted = any(arguments.get("tilt") or ())
     if isinstance(solution, PairSolution):
-        pictures = [_figure(member._ring_chart()) for member in solution.bearings]
+        rings = [member._ring_chart() for member in solution.bearings]
+        pictures = [
+            _figure(
+                ring._replace(
+                    caption=f"{name} bearing: {ring.caption[0].lower()}{ring.caption[1:]}"
+                )
+            )
+            for name, ring in zip(("First", "Second"), rings, strict=True)
+        ]
     else:
         profiles = {"as it stands": _profile(solution)}
         if is_tilted and stage != "full":
@@ -511,7 +519,7 @@ def _worded(row: Row, is_ring: bool) -> Row | None:
         text = f"{plain(value, 4)} h"
     elif row.key in PLACES:
         words = PLACES["rotation" if is_ring and row.key == "tilt" else row.key]
-        parts = zip(value, words, strict=True)
+        parts = zip(display.without_rounding(value), words, strict=True)
         text = ", ".join(f"{_component(row, part)} {place}" for part, place in parts if part)
     text = EXPONENT.sub(lambda large: plain(float(large[0]), 4), MEMBER.sub(_member, text))
     return row._replace(label=LABELS.get(row.key, row.label), text=text) if text else None
@@ -575,15 +583,25 @@ def _pressures(**contacts: Contact | StressPlan | None) -> str:
     places = Axis("xy"[axis], "m")
     caption = f"Pressure along {places.name} through its largest value"
     (name, (x, pressure)), *others = curves.items()
-    if len(others) == 1:
+    if len(others) == 1 and _apart(*curves.values()) < LINE_WIDTH:
         other, (beside, second) = others[0]
-        difference = pressure - np.interp(x, beside, second)
-        if np.abs(difference).max() < LINE_WIDTH * pressure.max():
-            alone = _drawn(f"{caption}, {name}.", places, PRESSURE, {name: curves[name]})
-            words = f"Pressure, {name} less {other}: no line's width of the pressure itself."
-            axis_of = Axis("difference", "Pa")
-            return alone + _drawn(words, places, axis_of, {name: (x, difference)})
+        inside = pressure > pressure.max() / 2  # where it is not steep
+        difference = (pressure - np.interp(x, beside, second))[inside]
+        words = f"Difference of the pressures, {name} less {other}, above half of the largest."
+        axis_of = Axis("difference", "Pa")
+        alone = _drawn(f"{caption}, {name}.", places, PRESSURE, {name: curves[name]})
+        return alone + _drawn(words, places, axis_of, {name: (x[inside], difference)})
     return _drawn(f"{caption}.", places, PRESSURE, curves)
+
+
+def _apart(one: tuple[Field, Field], other: tuple[Field, Field]) -> float:
+    """Return the largest distance of the points of a curve from another, over their picture."""
+    scale = np.ptp(one, axis=1)[:, None]
+    points, line = (np.stack(curve) / scale for curve in (one, other))
+    along = np.append(0.0, np.hypot(*np.diff(line)).cumsum())
+    steps = np.linspace(0.0, along[-1], max(2, int(4 * along[-1] / LINE_WIDTH)))
+    dense = np.stack([np.interp(steps, along, part) for part in line])
+    return float(np.hypot(*(points[:, :, None] - dense[:, None])).min(axis=1).max())
 
 
 def _profile(solution: BearingSolution) -> tuple[Field, Field]:

@@ -228,7 +228,9 @@ def _card(name: str, entry: Data, texts: Mapping[str, Any]) -> Card:
     for field in (*main, *rest):
         data = with_value(data, field, field.default)
     more = _other_fields(data, CHOSEN | {field.path for field in (*main, *rest)}, texts)
-    return Card(name, entry["group"], entry["title"], data, main, [*rest, *more], NONE, texts["shown"])
+    return Card(
+        name, entry["group"], entry["title"], data, main, [*rest, *more], NONE, texts["shown"]
+    )
 
 
 def own_card(path: AnyPath) -> Card:

@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import reduce
+from itertools import pairwise
 from operator import getitem
 from typing import Any, NamedTuple
 
@@ -147,7 +148,7 @@ def entry_at(data: Any, path: str) -> Any:
 def field_of(
     data: Mapping[str, Any],
     path: str,
-    texts: Mapping[str, Any],
+    texts: Mapping[str, Any] | None = None,
     has_units: bool = True,
     **own: Any,
 ) -> Field:
@@ -155,6 +156,7 @@ def field_of(
 
     `texts` are labels, units and helps by names of quantities, in place of those of the schema.
     """
+    texts = {"labels": {}, "units": {}, "help": {}, **(texts or {})}
     keys, units = keys_of(path), data.get("units", "SI")
     names = [key for key in keys if isinstance(key, str)]
     node = place(data, keys).node
@@ -201,6 +203,6 @@ def label_of(keys: Sequence[Any], quantity: str, labels: Mapping[str, str]) -> s
     if keys[0] == "materials":
         words.append(f"of {keys[1]}")
     words += [f"of the {key} bearing" for key in keys if key in ("first", "second")]
-    members = zip(keys, keys[1:], strict=False)
+    members = pairwise(keys)
     words += [f"of {PARTS[key]} {item + 1}" for key, item in members if key in PARTS]
     return " ".join(words)

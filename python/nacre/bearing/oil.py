@@ -86,4 +86,4 @@ def oil_viscosity(grade: float, temperature: float) -> float:
     places = np.log10(np.array([40.0, 100.0, celsius]) + KELVIN)
     first, last = np.log10(np.log10(np.array(known) + SHIFT))
     slope = (last - first) / (places[1] - places[0])
-    return float(10 ** 10 ** (first + slope * (places[2] - places[0])) - SHIFT) * 1e-6
+    return float(10**10 ** (first + slope * (places[2] - places[0])) - SHIFT) * 1e-6

@@ -199,7 +199,7 @@ class BearingFilm(Oil):
 
 
 class BearingOil(Table):
-    """Mineral oil of the viscosity index 95: its grade makes the life that of ISO 281 with a_ISO."""
+    """Mineral oil of the viscosity index 95, for the film, and for a life with a_ISO of ISO 281."""
 
     grade: Number = Field(description="ISO VG, the viscosity at 40 °C in mm²/s.")
     temperature: Number = Field(description="Temperature of operation in °C.")
@@ -371,7 +371,9 @@ class BearingCase(Keys):
 
     def _single(self, path: str, table: SingleKind) -> Any:
         """Return the bearing of a table at a path."""
-        arguments = table.model_dump(exclude={"kind", "solve", "life", "oil", "film"}, exclude_unset=True)
+        arguments = table.model_dump(
+            exclude={"kind", "solve", "life", "oil", "film"}, exclude_unset=True
+        )
         for name in arguments:
             value = getattr(table, name)
             if isinstance(value, Body):

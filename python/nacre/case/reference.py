@@ -162,6 +162,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[bearing.solve.moment]` and `[bearing.solve.tilt]`", definitions["About"]
     yield "`[bearing.life]`", definitions["BearingLife"]
     yield "`[[bearing.life.spectrum]]`", definitions["Duty"]
+    yield "`[bearing.oil]`", definitions["BearingOil"]
     yield "`[bearing.film]`", definitions["BearingFilm"]
     yield "`[sweep]`", definitions["Sweep"]
     yield "`[report]`", definitions["Head"]

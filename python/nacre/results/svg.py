@@ -157,7 +157,7 @@ def _colours(curves: Sequence[Curve]) -> list[str]:
     shares, number, colours = np.linspace(0.0, GRADED, len(curves)), -1, []
     for curve, (red, green, blue) in zip(curves, viridis(shares), strict=True):
         number += curve.look != "thin"
-        graded = f"style='stroke:#{red:02x}{green:02x}{blue:02x}'"
+        graded = f"stroke='#{red:02x}{green:02x}{blue:02x}'"  # pages allow no style here
         colours.append(graded if curve.look == "graded" else f"class='c{number % 7}'")
     return colours
 

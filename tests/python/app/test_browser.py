@@ -125,7 +125,7 @@ def saved(page: Opened, button: str, folder: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("name", ["bearing", "contact", "indentation"])
+@pytest.mark.parametrize("name", ["bearing", "contact", "indentation", "wear"])
 def test_numbers_are_those_of_the_saved_case(
     browser: Any, url: str, name: str, tmp_path: Path, capsys: Capture
 ) -> None:
@@ -136,9 +136,10 @@ def test_numbers_are_those_of_the_saved_case(
     assert command("solve", path, "--json") == 0
     numbers = json.loads(capsys.readouterr().out)
     if name == "indentation":
-        expected, in_case = max(numbers["approach"]), "µm"
+        expected, in_case = 1e3 * max(numbers["approach"]), "nm"
     else:
         peaks = numbers.get("peak_pressures", [[numbers.get("peak_pressure")]])
+        peaks = [[numbers["peak_pressure"][-1]]] if name == "wear" else peaks
         expected, in_case = max(map(max, peaks)), "MPa"
     assert unit == in_case
     assert float(value) == float(f"{expected:.5g}")
@@ -198,7 +199,7 @@ def test_a_value_typed_right_after_solved_counts(browser: Any, url: str, opened:
             page.type("indent.load", f"{load:g}")
         for page, load in ((opened, 1 + k / 10), (other, 3 + k / 10)):
             page.wait()
-            assert f"<td>{1000 * load:g} µN</td>" in page.at("rows").inner_html()
+            assert f"<td>{load:g} mN</td>" in page.at("rows").inner_html()
     other.close()
 
 
@@ -206,7 +207,7 @@ def test_a_busy_browser_loses_no_value(opened: Opened) -> None:
     opened.page.evaluate("() => { const end = Date.now() + 9000; while (Date.now() < end); }")
     opened.type("indent.load", "2")
     opened.wait()
-    assert "<td>2000 µN</td>" in opened.at("rows").inner_html()
+    assert "<td>2 mN</td>" in opened.at("rows").inner_html()
 
 
 def process_at(port: int) -> subprocess.Popen[str]:
@@ -240,13 +241,13 @@ def test_a_program_that_is_stopped_or_started_again_loses_no_value(browser: Any)
         time.sleep(1)
         process = process_at(port)
         page.wait()
-        assert "<td>2000 µN</td>" in page.at("rows").inner_html()
+        assert "<td>2 mN</td>" in page.at("rows").inner_html()
         process.send_signal(signal.SIGSTOP)
         page.type("indent.load", "3")
         time.sleep(9)
         process.send_signal(signal.SIGCONT)
         page.wait()
-        assert "<td>3000 µN</td>" in page.at("rows").inner_html()
+        assert "<td>3 mN</td>" in page.at("rows").inner_html()
     finally:
         ended(process)
         page.context.close()
@@ -264,7 +265,7 @@ def test_a_page_waits_for_its_program(browser: Any) -> None:
         process = process_at(port)
         page.wait()
         assert page.at("error").count() == 0
-        assert "<td>2000 µN</td>" in page.at("rows").inner_html()
+        assert "<td>2 mN</td>" in page.at("rows").inner_html()
     finally:
         ended(process)
         page.context.close()
@@ -282,7 +283,7 @@ def test_a_wrong_value_is_a_line_and_the_next_one_counts(opened: Opened) -> None
     opened.type("indent.load", "1,5")
     opened.wait()
     assert (opened.at("error").count(), wrong.count()) == (0, 0)
-    assert "<td>1500 µN</td>" in opened.at("rows").inner_html()
+    assert "<td>1.5 mN</td>" in opened.at("rows").inner_html()
 
 
 def test_an_overflow_is_a_line_and_the_next_value_counts(browser: Any, url: str) -> None:
@@ -308,7 +309,7 @@ def test_a_draft_that_goes_on_is_given_up(opened: Opened, monkeypatch: Patch) ->
     opened.type("indent.load", "2")
     opened.wait()
     assert time.monotonic() - start < 15  # not the half minute of an answer
-    assert "<td>2000 µN</td>" in opened.at("rows").inner_html()
+    assert "<td>2 mN</td>" in opened.at("rows").inner_html()
 
 
 def test_an_empty_limit_is_unknown(browser: Any, url: str) -> None:
@@ -406,6 +407,108 @@ def test_a_material_fills_its_numbers(browser: Any, url: str) -> None:
     assert "No yield stress of 100Cr6" in page.page.locator(".source:visible").text_content()
     page.type("materials.steel.young", "200")
     assert page.page.locator(".source:visible").count() == 0
+    page.close()
+
+
+def test_own_numbers_come_back(browser: Any, url: str) -> None:
+    page = Opened(browser, url, "#card=line")
+    page.wait()
+    page.type("materials.steel.young", "203.5")
+    menu = page.page.locator("select.material:visible").first
+    menu.select_option("440C")
+    assert page.at("field:materials.steel.young").input_value() == "209.6"
+    menu.select_option("")
+    assert page.at("field:materials.steel.young").input_value() == "203.5"
+    assert page.at("field:materials.steel.yield_stress").input_value() == "2000"
+    page.wait()
+    page.close()
+
+
+def test_an_error_has_no_word_of_the_values_before(opened: Opened) -> None:
+    verdict = opened.at("verdict")
+    before = verdict.get_attribute("data-level")
+    assert before == "bad"
+    opened.type("indent.load", "-3")
+    opened.wait("failed")
+    assert verdict.get_attribute("data-level") == ""
+    assert verdict.inner_text().strip() == "No answer to these values."
+    opened.type("indent.load", "1")
+    opened.wait()
+    assert verdict.get_attribute("data-level") == before
+
+
+@pytest.mark.parametrize(
+    ("typed", "key", "then"),
+    [("12", "ArrowUp", "13"), ("1.50", "ArrowDown", "1.49"), ("2,5", "ArrowUp", "2.6")],
+)
+def test_arrow_keys_step_by_one_of_the_last_digit(
+    opened: Opened, typed: str, key: str, then: str
+) -> None:
+    opened.type("indent.load", typed)
+    opened.at("field:indent.load").press(key)
+    assert opened.at("field:indent.load").input_value() == then
+    opened.wait()
+    assert f"<td>{then} mN</td>" in opened.at("rows").inner_html()
+
+
+def test_the_history_of_the_browser_takes_back_changes(opened: Opened) -> None:
+    peak = opened.wait()
+    for path, text in (("indent.load", "2"), ("body.layers[0].thickness", "800")):
+        opened.type(path, text)
+        opened.wait()
+    opened.page.go_back()
+    assert opened.at("field:body.layers[0].thickness").input_value() == "1000"
+    assert opened.at("field:indent.load").input_value() == "2"
+    opened.at("report").focus()
+    opened.page.keyboard.press("Control+z")
+    opened.page.wait_for_function("location.hash === '#card=indentation'")
+    assert opened.at("field:indent.load").input_value() == "1"
+    assert opened.wait() == peak
+    opened.page.go_forward()
+    assert opened.at("field:indent.load").input_value() == "2"
+    opened.wait()
+
+
+def test_an_unknown_card_is_said(browser: Any, url: str) -> None:
+    page = Opened(browser, url, "#card=gear&load=3")
+    page.wait("draft")
+    assert "a card that is not known here: gear" in page.page.locator(".note").text_content()
+    assert page.at("field:solve.load").input_value() == "20"
+    page.close()
+
+
+def test_prints_have_the_inputs(opened: Opened) -> None:
+    hidden = "one => getComputedStyle(one).display === 'none'"
+    opened.page.emulate_media(media="print")
+    opened.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert opened.at("field:indent.load").is_visible()
+    assert opened.at("verdict").is_visible()
+    assert opened.page.locator("header").evaluate(hidden)
+    assert opened.page.locator("details[open]").count() >= 1
+    opened.page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert opened.page.locator("details[open]").count() == 0
+
+
+def test_colours_follow_the_scheme(browser: Any, url: str) -> None:
+    colours = set()
+    for scheme in ("light", "dark"):
+        page = Opened(browser, url, "#card=indentation", color_scheme=scheme)
+        page.wait()
+        for selector, name in (("body", "backgroundColor"), ("figure svg .paper", "fill")):
+            colour = f"one => getComputedStyle(one).{name}"
+            colours.add((selector, page.page.locator(selector).first.evaluate(colour)))
+        page.close()
+    assert len(colours) == 4
+
+
+def test_cleanliness_is_chosen_from_words(browser: Any, url: str) -> None:
+    page = Opened(browser, url, "#card=ball-bearing")
+    page.wait()
+    before = page.at("rows").inner_text()
+    page.at("field:bearing.oil.cleanliness").select_option("severe contamination")
+    page.wait()
+    assert page.at("rows").inner_text() != before
+    assert "cleanliness=severe+contamination" in page.page.url
     page.close()
 
 

@@ -54,6 +54,8 @@ def material_of(case: Case, name: str) -> object:
 
 def others(field: Field) -> list[str]:
     """Return other values of a field, as they are typed."""
+    if isinstance(field.default, str):
+        return [word for word in field.choices if word != field.default]
     numbers = LIMITS if not field.default else [field.default * factor for factor in FACTORS]
     if field.is_count:
         numbers = [round(number) for number in numbers if round(number) != field.default]

@@ -343,7 +343,23 @@ def test_a_long_answer_ends_in_a_sentence(server: Server, monkeypatch: Patch) ->
     monkeypatch.setattr(module, "SECONDS", 0.0)
     code, reply = post(server, question(stage="full"))
     assert code == 200
-    assert "takes longer than" in reply["error"]
+    assert "computes for more than" in reply["error"]
+
+
+def test_a_busy_machine_ends_no_answer(server: Server, monkeypatch: Patch) -> None:
+    """Time that others take, and that an answer waits, is not counted."""
+    times = iter([0.0, 1.0, 2.0, 31.5, 60.0, 62.1])
+    monkeypatch.setattr(module.time, "process_time", lambda: next(times))
+    _, is_wanted = server.going("one", 1)
+    server.running = 1
+    assert is_wanted()
+    assert is_wanted()
+    assert is_wanted()
+    server.running = 2  # of the next 58 s half are another's
+    assert is_wanted()
+    with pytest.raises(ValueError, match="computes for more than 30 s"):
+        is_wanted()
+    server.running = 0
 
 
 @pytest.mark.parametrize(

@@ -108,5 +108,6 @@ def test_the_page_names_no_argument(name: str) -> None:
                 parts = answer(card.case(values), stage)["parts"]
             verdict = parts.get("verdict", {"words": "", "lines": []})
             for text in (verdict["words"], *verdict["lines"], *parts["warnings"]):
-                assert not re.search(r"\w+=|\w_\w", text), text
+                # The factor of ISO 281 is a symbol.
+                assert not re.search(r"\w+=|\w_\w", text.replace("a_ISO", "")), text
                 assert not COARSE.search(text), text

@@ -305,5 +305,7 @@ one("[data-testid=report]").addEventListener("click", () => save("report", "repo
 one("[data-testid=case-file]").addEventListener("click", () => save("answer", "case", "application/toml", "toml"));
 one("[data-testid=copy-link]").addEventListener("click", () =>
   navigator.clipboard.writeText(location.href).then(() => tell(note, "Link copied."), () => tell(note, "The link is in the address bar.")));
+addEventListener("beforeprint", () => all("details:not([open])", form).forEach((one) => (one.dataset.closed = one.open = true)));
+addEventListener("afterprint", () => all("details[data-closed]", form).forEach((one) => (one.open = delete one.dataset.closed && false)));
 addEventListener("hashchange", restore);
 restore();
