@@ -612,7 +612,8 @@ class StressSummary(Shown, Warned, Result):
 
     def _tables(self) -> Sequence[Table]:
         head, *rows = _peak_rows(self)
-        for part in (*self.layers, *self.interfaces):
+        parts: list[LayerStress | InterfaceStress] = [*self.layers, *self.interfaces]
+        for part in parts:
             words = display.part_in_words(part, self.layers).removeprefix("of ")
             rows = [[row[0].replace(display.part(part), words), *row[1:]] for row in rows]
         return [Table("Extremes", head, rows)]

@@ -114,11 +114,19 @@ class Study(Shown):
                     display.share(e, v) if np.isfinite(e) and np.isfinite(v) else ""
                     for e, v in pairs
                 ]
+        if (doubts := self._doubts()) and any(doubts):
+            columns["resolved"] = ["no" if doubt else "yes" for doubt in doubts]
         tables = [table("Cases", [[*columns], *zip(*columns.values(), strict=True)])]
         if "error" in frame and (wrong := frame[frame["error"] != ""]).size:
             cells = [[*map(str, row)] for row in wrong[[*places, "error"]].values.tolist()]
             tables.append(Table("Cases that failed", [*map(label_of, places), "error"], cells))
         return tables
+
+    def _doubts(self) -> list[bool]:
+        """Return whether the cells of each case are too large for some of its numbers."""
+        if "warnings" not in self.dataset or self.dataset["warnings"].dims != self._dims:
+            return []
+        return ["uncertain" in text for text in np.ravel(self.dataset["warnings"].values).tolist()]
 
     def _charts_of(self, name: str) -> list[Chart]:
         """Return the chart of an output over the first parameter that is a number."""

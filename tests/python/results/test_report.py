@@ -272,6 +272,17 @@ def test_points_of_a_fit_are_on_top_of_its_line() -> None:
     assert looks == ["line", "points"] * (len(looks) // 2)
 
 
+def test_cases_of_a_study_say_whether_their_cells_resolve_the_stress() -> None:
+    thin = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.2), 2e-6)])
+    case = {"shape": BALL, "body": thin, "grid": nacre.Grid((16, 16), (4e-4, 4e-4))}
+    study = quiet(nacre.sweep, case, {"load": [5.0, 10.0]}, outputs=["coating_tension"])
+    (cases,) = Study(study)._tables()
+    doubts = ["uncertain" in text for text in study["warnings"].values.tolist()]
+    assert any(doubts)
+    assert [row[-1] for row in cases.rows] == ["no" if doubt else "yes" for doubt in doubts]
+    assert cases.head[-1] == "resolved"
+
+
 def test_curves_of_a_study_have_their_errors() -> None:
     case = {"shape": nacre.Sphere(5e-3), "body": STEEL, "max_cells": 4096}
     study = quiet(nacre.sweep, case, {"load": [5.0, 10.0]}, outputs=["peak_pressure"])
