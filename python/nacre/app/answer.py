@@ -484,7 +484,12 @@ def _pressures(**contacts: Contact | StressPlan | None) -> str:
         name: section(contact._normal, axis, getattr(contact, "edge", NO_EDGE))
         for name, contact in drawn.items()
     }
-    return _drawn("Pressure through the largest.", Axis("xy"[axis], "m"), PRESSURE, curves)
+    return _drawn(
+        f"Pressure along {'xy'[axis]} through the largest value.",
+        Axis("xy"[axis], "m"),
+        PRESSURE,
+        curves,
+    )
 
 
 def _profile(solution: BearingSolution) -> tuple[Field, Field]:

@@ -428,7 +428,7 @@ class FatigueSummary(Shown, Warned, Result):
         marks, deepest = [face.depth for face in self.interfaces], float(self.depths.max())
         enlarged = enlarged_depth(marks, deepest)
         axes = Axis("z", "m", (0.0, deepest or 1.0)), Axis("stress", "Pa")
-        caption = "What a material needs at each depth; dotted: interfaces."
+        caption = "Required strength at each depth; dotted: interfaces."
         return [Chart(caption, curves, axes, marks, (0.0, enlarged) if enlarged else None)]
 
     def _tables(self) -> Sequence[Table]:
