@@ -31,8 +31,10 @@ HABITS = {
 PATTERNS = {habit: re.compile(pattern, re.IGNORECASE) for habit, pattern in HABITS.items()}
 
 # What is not prose in a page: programs, options of directives, formulas, tables, headings.
-FENCE = re.compile(r"^([`~]{3,})\{?(?:code-block|image|figure|math|\w*).*?^\1`*$", re.DOTALL | re.M)
-NOT_PROSE = re.compile(r"^(?:\||#|:\w|:::|\(\w+\)=)[^\n]*$|<!--.*?-->", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^([`~]{3,})(?!\{glossary\}).*?^\1$", re.DOTALL | re.MULTILINE)
+NOT_PROSE = re.compile(
+    r"^(?:\||#|:\w|:::|```|\(\w+\)=)[^\n]*$|<!--.*?-->", re.MULTILINE | re.DOTALL
+)
 INDENTED = re.compile(r"(?<=\n\n)(?: {4}[^\n]*\n)+")
 DISPLAYED = re.compile(r"\$\$.*?\$\$", re.DOTALL)
 FORMULA = re.compile(r"\$[^$]+\$")
