@@ -305,7 +305,7 @@ class FatigueSummary(Shown, Warned, Result):
             cautions=cautions,
             notes=notes,
             unasked=UNASKED if demands and not is_limited else None,
-            question="Does the body shake down, and bear all cycles?" if is_limited else None,
+            question="Does the body shake down and survive all cycles?" if is_limited else None,
         )
 
     def _demands(self) -> Iterator[Demand]:

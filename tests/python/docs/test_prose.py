@@ -26,7 +26,7 @@ HABITS = {
     "where, what": r"\bwhere\b(?! \$)(?![^.!?]*\?)|\bwhat\b(?![^.!?]*\?)",
     "private words": r"\b(?:says?|stands?|bears?|carr(?:y|ies)|coats?|(?<!error )bars?)\b(?!-)"
     r"|\b(?:is|are|was|were) through\b|\bgo(?:es)? on\b|\bbeside\b",
-    "is no, too": r"(?<!there )\b(?:is|are|was|were) no\b|, too\b",
+    "is no, too": r"(?<!there )\b(?:is|are|was|were) no\b(?! longer)|, too\b",
 }
 PATTERNS = {habit: re.compile(pattern, re.IGNORECASE) for habit, pattern in HABITS.items()}
 
