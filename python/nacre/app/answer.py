@@ -581,7 +581,7 @@ def _pressures(**contacts: Contact | StressPlan | None) -> str:
         for name, contact in drawn.items()
     }
     places = Axis("xy"[axis], "m")
-    caption = f"Pressure along {places.name} through its largest value"
+    caption = f"Pressure along {places.name} through the largest value"
     (name, (x, pressure)), *others = curves.items()
     if len(others) == 1 and _apart(*curves.values()) < LINE_WIDTH:
         other, (beside, second) = others[0]
@@ -594,10 +594,10 @@ def _pressures(**contacts: Contact | StressPlan | None) -> str:
     return _drawn(f"{caption}.", places, PRESSURE, curves)
 
 
-def _apart(one: tuple[Field, Field], other: tuple[Field, Field]) -> float:
+def _apart(curve: tuple[Field, Field], reference: tuple[Field, Field]) -> float:
     """Return the largest distance of the points of a curve from another, over their picture."""
-    scale = np.ptp(one, axis=1)[:, None]
-    points, line = (np.stack(curve) / scale for curve in (one, other))
+    scale = np.ptp(curve, axis=1)[:, None]
+    points, line = (np.stack(each) / scale for each in (curve, reference))
     along = np.append(0.0, np.hypot(*np.diff(line)).cumsum())
     steps = np.linspace(0.0, along[-1], max(2, int(4 * along[-1] / LINE_WIDTH)))
     dense = np.stack([np.interp(steps, along, part) for part in line])

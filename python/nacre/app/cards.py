@@ -85,7 +85,7 @@ class Card:
         data = self.base
         for path, typed in values.items():
             if (field := self.by_path.get(path)) is None:
-                raise FieldError(path, f"{path[:60]} is no field of this card")
+                raise FieldError(path, f"{path[:60]} is not a field of this card")
             data = with_value(data, field, field.number(typed))
         check_size(data)
         data = data if self.name == "own" else _solvable_case(data)

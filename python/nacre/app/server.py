@@ -165,7 +165,7 @@ class Server(ThreadingHTTPServer):
             return json.dumps(self.reply(question), allow_nan=False).encode()
         except BaseException as error:  # the panics of Rust are no Exception
             _log(error)
-            sentence = f"nacre failed: {type(error).__name__}; the terminal says where"
+            sentence = f"nacre failed: {type(error).__name__}; see the terminal for details"
             return json.dumps({"error": sentence}).encode()
 
     @contextmanager

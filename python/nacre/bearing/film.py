@@ -39,7 +39,7 @@ SLOWEST, FASTEST = 1e-20, 1e-2
 FLAT = 1e-9
 """Rise of a shape over the displacement below which it is rounding, of 1e-16 of both."""
 COATED = (
-    "the film is that of bare substrates: layers no thicker than b/2, half of the half-width, "
+    "the film is computed for bare substrates: layers no thicker than b/2, half of the half-width, "
     "change it by some -10 to +12 %, an estimate that nacre's tests do not check"
 )
 

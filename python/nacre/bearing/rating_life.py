@@ -373,7 +373,7 @@ def life_of(
         rotation = solution.speed if speed is None else above("speed", speed, -math.inf, "rad/s")
         rates = [terms.rate(solution, 1.0, rotation)]
     elif speed is not None:
-        raise ValueError("speed must not be given beside spectrum, which has speeds")
+        raise ValueError("speed must not be given with spectrum, which has speeds")
     else:
         rates = [
             terms.rate(_duty_solution(solution, conditions, turns), share, turns)
@@ -422,7 +422,7 @@ def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> f
     if lubrication.is_known:
         return fatigue_load_limit(bearing) if limit is None else above("fatigue_load_limit", limit)
     if limit is not None:
-        raise ValueError("fatigue_load_limit must be given beside a lubrication, got none")
+        raise ValueError("fatigue_load_limit must be given with a lubrication, got none")
     return None
 
 

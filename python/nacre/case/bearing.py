@@ -136,7 +136,7 @@ class BearingSolve(Table):
 class Duty(Table):
     """A part of a load spectrum."""
 
-    share: Number = Field(description="Share of the time; those of all parts sum to 1.")
+    share: Number = Field(description="Share of the time; all shares sum to 1.")
     force: InSpace = Field(description="Forces on the inner ring [N].")
     speed: Number = Field(description="Angular velocity of the ring that rotates [rad/s].")
 
@@ -147,7 +147,7 @@ class Rating(Table):
 
     edge: Literal["standard", "pressure", "none"] = Field(
         "standard",
-        description="Edge factors: those of the standard, those of the solved pressure, or none.",
+        description="Edge factors: of the standard, of the solved pressure, or none.",
     )
     rotating: Ring | None = Field(
         None,
@@ -329,7 +329,7 @@ class BearingCase(Keys):
 
     solved: ClassVar[tuple[str, ...]] = ("materials", "bearing")
 
-    bearing: AnyBearing = Field(description="Bearing, and what is asked of it.")
+    bearing: AnyBearing = Field(description="Bearing and its requirements.")
 
     @model_validator(mode="after")
     def _with_contacts(self) -> BearingCase:

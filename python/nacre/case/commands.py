@@ -101,7 +101,7 @@ def solve(
         typer.Option(
             metavar="FILE",
             help="Solution to start from, a .nc file: the surfaces keep its permanent indentation. "
-            "Or a history of wear to go on from.",
+            "Or a history of wear to continue.",
         ),
     ] = None,
     units: Units = None,
@@ -123,7 +123,7 @@ def sweep(
         typer.Option(
             metavar="FILE",
             callback=_in_folder,
-            help="NetCDF file, in place of the one in the case.",
+            help="NetCDF file, in place of the file in the case.",
         ),
     ] = None,
     save: Annotated[

@@ -104,11 +104,11 @@ Values = Number | Annotated[Numbers, Field(max_length=MOST_CONTACTS)]
 class Indent(Table):
     """What is solved: exactly one of load, approach and radius."""
 
-    load: Values | None = Field(None, description="Loads, below 0 where the tip is pulled [N].")
+    load: Values | None = Field(None, description="Loads, negative for a pulled tip [N].")
     approach: Values | None = Field(None, description="Approaches [m].")
     radius: Values | None = Field(None, description="Contact radii [m].")
     branch: Literal["stable", "unstable"] = Field(
-        "stable", description="Branch where adhesion gives two contacts the same load or approach."
+        "stable", description="Branch, if adhesion gives two contacts the same load or approach."
     )
     control: Literal["load", "approach"] = Field(
         "load", description="What is held while the tip is pulled off."

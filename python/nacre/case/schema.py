@@ -96,8 +96,8 @@ AnyInterface = Annotated[
 class Bond(Table):
     """What an interface bears, for the verdict on stresses."""
 
-    shear: Number | None = Field(None, description="Shear that it bears [Pa].")
-    tension: Number | None = Field(None, description="Tension that it bears [Pa].")
+    shear: Number | None = Field(None, description="Shear strength [Pa].")
+    tension: Number | None = Field(None, description="Tensile strength [Pa].")
 
 
 @from_signature(nacre.Layer, material=AnyMaterial, interface=AnyInterface, name=str)
@@ -377,7 +377,7 @@ class Bodies(Keys):
 
     body: Body = Field(description="Body that the shape or the tip is pressed into.")
     counterbody: Body | None = Field(
-        None, description="Body of the shape or the tip; rigid where it is left out."
+        None, description="Body of the shape or the tip; rigid by default."
     )
 
     def bodies(self) -> dict[str, Any]:
@@ -403,7 +403,7 @@ class CaseTable(Bodies):
 
     shape: AnyShape = Field(description="Shape that is pressed in.")
     grid: Grid | None = Field(None, description=SOLVE["grid"])
-    solve: Solve = Field(description="What presses, and how the contact is solved.")
+    solve: Solve = Field(description="Load or approach, and settings of the solver.")
     slide: Slide | None = Field(None, description="Friction, in one step or in a history.")
     roll: Roll | None = Field(None, description="Rolling with friction; without slide.")
     wear: Wear | None = Field(

@@ -399,7 +399,7 @@ class FrictionSolution(NormalContact, Shown, Result):
             return charts
         bound = np.where(self.bound > 0, self.bound, np.inf)
         share = np.hypot(*self.traction) / bound
-        caption = "Traction over friction times pressure: it slips where that is 1."
+        caption = "Traction over friction times pressure: slip if it is 1."
         axis = Axis("traction over its bound", "", (0.0, 1.0))
         return [*charts, contact_map(self, share, axis, caption)]
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from nacre.contact.solution import Report, Solution
 
 MOST = {
-    "share of the modulus": (0.08, "diamond has a hardness of 0.08 of it; only rubber bears more"),
+    "share of the modulus": (0.08, "diamond has a hardness of 0.08 of it; only rubber has more"),
     "widths of the contact": (1000.0, "what is below moves less than a thousandth of the layer"),
     "friction": (3.0, "clean metals in vacuum and soft rubber reach 1 to 3"),
     "creepage": (0.05, "wheels and rollers slide as a whole from 1 % on, and nobody steers 5 %"),

@@ -1234,7 +1234,7 @@ def depth_charts(
     axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
     words = ["Von Mises stress below the largest pressure"]
     words += ["dotted: interfaces"] if faces[1:-1] else []
-    words += ["inset: the first three thicknesses of the coat"] if inset else []
+    words += ["inset: the first three thicknesses of the coating"] if inset else []
     caption = "; ".join(words) + "."
     yield Chart(caption, curves, axes, faces[1:-1], inset)
 

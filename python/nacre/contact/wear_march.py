@@ -70,14 +70,14 @@ MOST_ENDS = 1_000_000
 ROUNDING = 1e-12
 """Part of a distance below which another is none."""
 NOT_SETTLED = (
-    "the distance at which a layer is through did not settle, and a step ends near it: take "
+    "the distance at which a layer is worn through did not settle, and a step ends near it: take "
     "shorter steps"
 )
 """Warning of a search for an event that ended before it was there."""
 NOTHING_WORN = {
     "sticks": "no cell slips in the steps of slide, and nothing is worn: give more force or shift, "
     "or smaller cells, of which those at the rim slip first",
-    "does-not-return": "the steps of slide slip the first time alone, and nothing is worn by "
+    "does-not-return": "the steps of slide slip only in the first cycle, and nothing is worn by "
     "further cycles: give the steps of a cycle, which end where they begin, as to and fro",
 }
 """Warnings of cycles that wear nothing, by the reason."""
@@ -665,13 +665,13 @@ def _warnings_of(
     if went_on or _worn_part(states[0]) >= 1.0:
         change = "still has it" if frozen else "lacks it there to first order only"
         notes.append(
-            f"a layer is through, and the elastic contact {change}: what follows errs by an "
-            "unknown part, to either side"
+            f"a layer is worn through, and the elastic contact {change}: later results have an "
+            "unknown error, to either side"
         )
     elif frozen and error is not None and error > MOST_THINNING:
         notes.append(
-            "the worn layer counts as thick as before: the pressure errs by some "
-            f"{100 * error:.0f} %"
+            "the elastic contact keeps the initial thickness of the worn layer: the error of the "
+            f"pressure is some {100 * error:.0f} %"
         )
     elif not frozen and (part > FIRST_ORDER or (error or 0.0) > MOST_THINNING):
         size = "by an unknown part" if error is None else f"by some {100 * error:.2g} %"

@@ -50,8 +50,8 @@ Scheme = Literal["trapezoidal", "euler"]
 Thickness = Literal["frozen", "first order"]
 Unit = Literal["m", "cycles", "passes"]
 MODEL = (
-    "wear by Archard's law, with a rate that is known; no third body, no running-in of the rate, "
-    "no change of friction, and layers {}: the error of the layers says what that costs"
+    "wear by Archard's law with a known rate; no third body, no running-in of the rate, "
+    "no change of friction, and layers {}: `thickness_error` estimates the error"
 )
 BODIES = ("shape", "body", "counterbody")
 """Inputs that the first contact of a history has."""
@@ -385,7 +385,7 @@ class WearHistory(Shown, Result):
                 when = f"after {travelled(life.distance, self.unit)}{share}"
             else:
                 error = 0.0  # that is certain
-            sentence = f"Through {when}{needed}{soon}."
+            sentence = f"Worn through {when}{needed}{soon}."
             return DISTANCE._replace(
                 value=life.distance, error=error, limit=limit, unit=self.unit, sentence=sentence
             )
@@ -396,7 +396,7 @@ class WearHistory(Shown, Result):
         body = max(layers, key=lambda name: deepest[name] / layers[name][0].thickness)
         worn = beside(layers[body][0].thickness, deepest[body], "m").rpartition(" ")[0]
         sentence = (
-            f"No layer is through after {travelled(reached, self.unit)}{needed}: "
+            f"No layer is worn through after {travelled(reached, self.unit)}{needed}: "
             f"{worn} of {number(layers[body][0].thickness, 'm')} worn at most."
         )
         limit = None if limit is not None and reached < limit else limit
@@ -664,7 +664,7 @@ class WearHistory(Shown, Result):
         ]
         down = (1.0 + HEADROOM) * float(last.max()) or 1.0, 0.0
         axes = Axis("y" if grid.is_line else "x", "m"), Axis("depth removed", "m", down)
-        return Chart("Depth removed, through the deepest in the end.", curves, axes)
+        return Chart("Wear depth through its largest final value.", curves, axes)
 
     def _rows(self) -> list[Row]:
         line = self.states[0].solution.grid.is_line
@@ -675,10 +675,10 @@ class WearHistory(Shown, Result):
         texts = [
             ("distance", travelled(last.distance, self.unit)),
             ("worn volume", f"{volumes[0]} of the body, {volumes[1]} of the counterbody"),
-            ("deepest", written(float(self.deepest[-1].max()), "m")),
+            ("largest depth", written(float(self.deepest[-1].max()), "m")),
             ("peak pressure", _fromto(self.peak_pressure, "Pa")),
             ("contact area", _fromto(self.contact_area, "m" if line else "m²")),
-            *[("through", event._words(self.unit)) for event in self.events],
+            *[("worn through", event._words(self.unit)) for event in self.events],
             ("steps", f"{report.steps}{errors}"),
         ]
         if report.thickness_error is not None:
@@ -687,7 +687,7 @@ class WearHistory(Shown, Result):
         return [remark(*text) for text in texts]
 
     def _remarks(self) -> list[Row]:
-        return [remark("ended", "at its end" if self.report.converged else "stopped")]
+        return [remark("ended", "as requested" if self.report.converged else "stopped")]
 
     def __repr__(self) -> str:
         """Return the verdict in a line."""

@@ -153,7 +153,7 @@ class Optimum(Shown):
         is_log = all((values > 0).all() for values in shares.values())
         share = charts.Axis("share of the start", scale="log" if is_log else "linear")
         axes = charts.Axis("solves, of contacts and of derivatives"), share
-        return charts.Chart("Course.", curves, axes)
+        return charts.Chart("Objective and parameters over the solves.", curves, axes)
 
     def _tables(self) -> Sequence[report.Table]:
         printed = self._table()

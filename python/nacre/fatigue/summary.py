@@ -306,7 +306,7 @@ class FatigueSummary(Shown, Warned, Result):
             cautions=cautions,
             notes=notes,
             unasked=UNASKED if demands and not is_limited else None,
-            question="Does the body shake down, and bear all cycles?" if is_limited else None,
+            question="Does the body shake down and survive all cycles?" if is_limited else None,
         )
 
     def _demands(self) -> Iterator[Demand]:
@@ -431,7 +431,7 @@ class FatigueSummary(Shown, Warned, Result):
         marks, deepest = [face.depth for face in self.interfaces], float(self.depths.max())
         enlarged = enlarged_depth(marks, deepest)
         axes = Axis("z", "m", (0.0, deepest or 1.0)), Axis("stress", "Pa")
-        caption = "What a material needs at each depth; dotted: interfaces."
+        caption = "Required strength at each depth; dotted: interfaces."
         return [Chart(caption, curves, axes, marks, (0.0, enlarged) if enlarged else None)]
 
     def _tables(self) -> Sequence[Table]:

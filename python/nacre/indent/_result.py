@@ -271,7 +271,7 @@ class Fit(Shown, Result):
         rest = Axis("residual", "N") if self.noise == "absolute" else Axis("residual, share")
         depth = Axis("depth", "m")
         return [
-            Chart("Force over depth as measured.", forces, (depth, Axis("force", "N"))),
+            Chart("Measured force over depth.", forces, (depth, Axis("force", "N"))),
             Chart("Residuals over depth.", residuals, (depth, rest)),
         ]
 
@@ -315,7 +315,9 @@ class Fit(Shown, Result):
         lines += [f"warning: {text}" for text in self.warnings]
         lines += self._sensitivities()
         if self.sigma < ROUNDING * (1 if self.noise != "absolute" else self.curves[0].force.max()):
-            lines.append("residuals are rounding: the intervals say nothing of a measurement")
+            lines.append(
+                "residuals are rounding errors: the intervals do not apply to a measurement"
+            )
         if UNFIT in self.reasons.values():
             lines.append("intervals are linear, and widened by what the residuals show")
         elif not self.is_profiled:

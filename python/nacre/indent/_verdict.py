@@ -21,7 +21,7 @@ TOLD = 0.1
 """Share of the whole error from which a source of it is named."""
 MOST_SOURCES = 4
 """Most sources that are named, the largest first."""
-UNKNOWN_SLOPES = "what errors of the numbers that are held do is not known"
+UNKNOWN_SLOPES = "the effect of errors of the fixed numbers is not known"
 WORDS = {"young": "modulus", "poisson": "Poisson's ratio"}
 """Words for parameters that paths name otherwise."""
 
@@ -115,7 +115,7 @@ def _assumption(assumed: list[str], has_exact_ratios: bool) -> str:
     names = f"{', '.join(some)} and {last}" if some else last
     if len(assumed) > MOST_SOURCES:
         names = "each modulus, thickness and number of the tip that is held"
-    return f"Errors of 1 % are assumed of {names}: give the known ones. W{exact}"
+    return f"Errors of 1 % are assumed of {names}: give known errors instead. W{exact}"
 
 
 def _words(name: str, owners: dict[str, str]) -> tuple[str, str]:

@@ -160,7 +160,7 @@ def contact_charts(result: Peaked) -> list[Picture]:
     pressure = Axis("pressure", "Pa")
     sections = [
         Chart(
-            f"Pressure along {'xy'[axis]}, through the largest.",
+            f"Pressure along {'xy'[axis]} through the largest value.",
             [Curve(*section(result, axis))],
             (Axis("xy"[axis], "m"), pressure),
         )
@@ -172,7 +172,7 @@ def contact_charts(result: Peaked) -> list[Picture]:
     if _are_alike(along_x, along_y):
         caption = sections[0].caption.removesuffix(".")
         sections = [sections[0]._replace(caption=f"{caption}; along y it is the same.")]
-    caption = "Pressure over the contact, x and y each to its scale; white: no contact."
+    caption = "Pressure over the contact, with separate scales of x and y; white: no contact."
     return [*sections, contact_map(result, result.pressure, pressure, caption)]
 
 
@@ -202,4 +202,6 @@ def loop_chart(steps: Sequence[Step], axis: int) -> Chart:
     forces = np.array([step.force[axis] for step in steps])
     unit, name = "N/m" if steps[0].grid.is_line else "N", "xy"[axis]
     axes = Axis(f"shift along {name}", "m"), Axis(f"force along {name}", unit)
-    return Chart("Force over shift, all steps.", [Curve(shifts, forces, look="marked")], axes)
+    return Chart(
+        "Tangential force over shift, all steps.", [Curve(shifts, forces, look="marked")], axes
+    )

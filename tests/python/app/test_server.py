@@ -236,7 +236,7 @@ def test_wrong_numbers_are_answers_that_name_the_field(server: Server, value: ob
 def test_only_fields_of_the_card_are_set(server: Server, path: str) -> None:
     code, reply = post(server, question(values={path: "1"}))
     assert code == 200
-    assert "is no field of this card" in reply["error"]
+    assert "is not a field of this card" in reply["error"]
 
 
 def test_every_answer_has_the_headers(server: Server) -> None:

@@ -417,7 +417,7 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     (LIMIT | {"contamination": "clean"}, 'contamination must be one of "extreme cleanliness"'),
     (LIMIT | {"contamination": 1.5}, "contamination must be a degree of cleanliness"),
     (LIMIT | {"fatigue_load_limit": 0.0}, "fatigue_load_limit must be finite and above 0"),
-    ({"fatigue_load_limit": 100.0}, "fatigue_load_limit must be given beside a lubrication"),
+    ({"fatigue_load_limit": 100.0}, "fatigue_load_limit must be given with a lubrication"),
     ({"additives": True}, "must be given beside additives"),
     (
         {"kinematic_viscosity": 20.0, "contamination": 0.5},

@@ -130,7 +130,7 @@ def test_a_required_distance_is_judged_everywhere(
 def test_without_a_required_distance_the_number_comes_first() -> None:
     judged = verdict(wear(), "wear")
     assert judged.level == "unknown"
-    assert judged.words.startswith("Through after 58")
+    assert judged.words.startswith("Worn through after 58")
     assert judged.question is None
 
 

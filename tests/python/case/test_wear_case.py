@@ -176,7 +176,7 @@ def test_the_command_prints_the_history_in_the_units_of_the_case(
     assert capsys.readouterr().out == f"{due}\n"
     life = history.life
     assert life is not None
-    assert f"Through after {life.distance / 1e3:.4g} m ± " in due
+    assert f"Worn through after {life.distance / 1e3:.4g} m ± " in due
     assert " at y = 0 mm." in due
     assert ", 0 µm² of the counterbody" in due
 
@@ -309,7 +309,7 @@ def test_the_page_takes_a_case_of_wear(tmp_path: Path) -> None:
     parts = full["parts"]
     assert float(parts["peak"][1].split()[0]) == pytest.approx(history.peak_pressure[-1], rel=1e-4)
     assert parts["verdict"]["level"] == "unknown"
-    assert "No layer is through after 200 m" in parts["verdict"]["words"]
+    assert "No layer is worn through after 200 m" in parts["verdict"]["words"]
     assert "worn volume" in parts["rows"]
     assert {"picture-1", "picture-2"} <= parts.keys()
     assert not (tmp_path / "worn.nc").exists()

@@ -35,7 +35,7 @@ def test_worn_volume_is_that_of_the_law() -> None:
     # Sums of 64 cells.
     assert_close(history.volume, due, rtol=1e-12)
     assert history.life is None
-    assert history.verdict().words.startswith("No layer is through")
+    assert history.verdict().words.startswith("No layer is worn through")
 
 
 @pytest.mark.filterwarnings("ignore:the worn layer counts as thick")
@@ -47,7 +47,7 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     assert abs(life.position[1]) < GRID.spacing[1]
     assert history.distance[-1] == life.distance
     assert history.deepest[-1, 0] == pytest.approx(2e-6, rel=1e-5)
-    assert history.verdict().words.startswith("Through after ")
+    assert history.verdict().words.startswith("Worn through after ")
     assert history.verdict().lines[0].startswith("First worn through: DLC of the body, at y = ")
     with pytest.warns(nacre.NacreWarning, match="a layer is through"):
         further = worn(sliding=1.2 * life.distance, steps=3, scheme="euler")
@@ -118,10 +118,10 @@ def test_a_history_goes_on_from_a_layer_that_is_through() -> None:
     assert [event.distance for event in begun.events] == [0.0]
     # What was asked is answered, and nothing is required.
     assert begun.verdict().level == "unknown"
-    assert begun.verdict().words == "Through from the start."
+    assert begun.verdict().words == "Worn through from the start."
     failing = begun.verdict(required_distance=1.0)
     assert (failing.level, failing.factor) == ("bad", 0.0)
-    assert failing.words == "Through from the start, 1 m required: too soon."
+    assert failing.words == "Worn through from the start, 1 m required: too soon."
     assert list(begun.distance) == [0.0]
     assert further.events == begun.events
     assert list(further.distance) == [0.0, 5.0, 10.0]
@@ -179,7 +179,7 @@ def test_fretting_wears_where_it_slips() -> None:
     ("steps", "message"),
     [
         # The second time, the roller is where it was.
-        ([{"shift": (None, 1e-6)}], "slip the first time alone, and nothing is worn"),
+        ([{"shift": (None, 1e-6)}], "slip only in the first cycle, and nothing is worn"),
         # The pressure of the outermost cells carries a thousandth of the load.
         ([{"force": (None, f)} for f in (3.0, -3.0)], "no cell slips in the steps of slide"),
     ],
@@ -397,7 +397,9 @@ def test_a_history_in_which_no_layer_is_through_lasts_at_least_its_distance(
     verdict = worn(steps="auto").verdict(required_distance=required)
     assert verdict.level == level
     assert verdict.factor == pytest.approx(100.0 / required)
-    assert verdict.words.startswith(f"No layer is through after 100 m, {required:g} m required: ")
+    assert verdict.words.startswith(
+        f"No layer is worn through after 100 m, {required:g} m required: "
+    )
     assert " of 2 µm worn at most." in verdict.words
 
 

@@ -26,13 +26,15 @@ HABITS = {
     "where, what": r"\bwhere\b(?! \$)(?![^.!?]*\?)|\bwhat\b(?![^.!?]*\?)",
     "private words": r"\b(?:says?|stands?|bears?|carr(?:y|ies)|coats?|(?<!error )bars?)\b(?!-)"
     r"|\b(?:is|are|was|were) through\b|\bgo(?:es)? on\b|\bbeside\b",
-    "is no, too": r"(?<!there )\b(?:is|are|was|were) no\b|, too\b",
+    "is no, too": r"(?<!there )\b(?:is|are|was|were) no\b(?! longer)|, too\b",
 }
 PATTERNS = {habit: re.compile(pattern, re.IGNORECASE) for habit, pattern in HABITS.items()}
 
 # What is not prose in a page: programs, options of directives, formulas, tables, headings.
-FENCE = re.compile(r"^([`~]{3,})\{?(?:code-block|image|figure|math|\w*).*?^\1`*$", re.DOTALL | re.M)
-NOT_PROSE = re.compile(r"^(?:\||#|:\w|:::|\(\w+\)=)[^\n]*$|<!--.*?-->", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^([`~]{3,})(?!\{glossary\}).*?^\1$", re.DOTALL | re.MULTILINE)
+NOT_PROSE = re.compile(
+    r"^(?:\||#|:\w|:::|```|\(\w+\)=)[^\n]*$|<!--.*?-->", re.MULTILINE | re.DOTALL
+)
 INDENTED = re.compile(r"(?<=\n\n)(?: {4}[^\n]*\n)+")
 DISPLAYED = re.compile(r"\$\$.*?\$\$", re.DOTALL)
 FORMULA = re.compile(r"\$[^$]+\$")

@@ -245,7 +245,7 @@ def test_an_error_that_is_not_known_is_not_judged() -> None:
     assert math.isnan(blind.uncertainty[YOUNG])
     verdict = blind.verdict(tolerance=0.5)
     assert verdict.level == "unknown"
-    assert verdict.words == "Cannot tell: what errors of the numbers that are held do is not known."
+    assert verdict.words == "Cannot tell: the effect of errors of the fixed numbers is not known."
     assert "Modulus of film 5 GPa (noise 2 %)" in verdict.lines[0]
 
 
