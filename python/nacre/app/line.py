@@ -13,7 +13,7 @@ from nacre._tools.units import number_in
 from nacre.app.answer import Measured
 from nacre.app.cards import MOST, Card
 from nacre.app.fields import Field, FieldError
-from nacre.bearing import check, estimated_balls
+from nacre.bearing import compare_ratings, estimated_balls
 from nacre.bearing.modified import SMALL
 from nacre.results.rows import remark
 
@@ -272,7 +272,7 @@ def _estimate(line: Line, card: Card) -> tuple[dict[str, str], str]:
         arguments["count"] = int(line.values["Z"])
     with heard() as notes:
         ball = estimated_balls(**arguments)
-        agreement = check(ball, capacity=known["C"])
+        agreement = compare_ratings(ball, capacity=known["C"])
     estimated = {}
     for name in ESTIMATED:
         field = card.by_path[f"bearing.{name}"]

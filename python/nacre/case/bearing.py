@@ -410,14 +410,14 @@ class BearingCase(Keys):
         if oil is not None:
             keywords.setdefault("viscosity", DENSITY * oil.viscosity())
         if table.speed is None:
-            keywords["speed"] = _rolling_speed(**si._arguments(), ring=table.ring)
+            keywords["speed"] = _rolling_speed(si._arguments(), table.ring)
         return keywords
 
 
-def _rolling_speed(
-    bearing: Any, ring: Ring, speed: float = 0.0, rotating: Ring = "inner", **_: object
-) -> float:
+def _rolling_speed(arguments: dict[str, Any], ring: Ring) -> float:
     """Return the speed of both surfaces in the contacts of a ring whose elements roll [m/s]."""
+    bearing, speed = arguments["bearing"], arguments.get("speed", 0.0)
+    rotating = arguments.get("rotating", "inner")
     turns = speed if rotating == ring else 0.0
     cage = bearing.cage_speed(speed, rotating)
     return float(abs(turns - cage) * bearing.tracks[RINGS.index(ring)])

@@ -105,7 +105,7 @@ def test_numbers_are_those_of_the_command_line(name: str, tmp_path: Path, capsys
         for one in cards()[name].fields
         if one.label in ("load", "largest load") or "load" in one.label
     )
-    changed: dict[str, object] = {load.path: str(1.3 * (load.default or 0))}
+    changed: dict[str, object] = {load.path: str(1.3 * float(load.default or 0))}
     numbers = solved(name, changed, tmp_path, capsys)
     stage = "stress" if name in ("contact", "line") else "full"
     parts = answer(cards()[name].case(changed), stage)["parts"]

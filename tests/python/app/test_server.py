@@ -349,7 +349,7 @@ def test_a_long_answer_ends_in_a_sentence(server: Server, monkeypatch: Patch) ->
 def test_a_busy_machine_ends_no_answer(server: Server, monkeypatch: Patch) -> None:
     """Time that others take, and that an answer waits, is not counted."""
     times = iter([0.0, 1.0, 2.0, 31.5, 60.0, 62.1])
-    monkeypatch.setattr(module.time, "process_time", lambda: next(times))
+    monkeypatch.setattr(time, "process_time", lambda: next(times))
     _, is_wanted = server.going("one", 1)
     server.running = 1
     assert is_wanted()
@@ -422,7 +422,8 @@ def test_nothing_of_a_file_is_kept(server: Server) -> None:
     assert (code, "parts" in reply) == (200, True)
     assert _recent.cache_info().currsize == 0
     assert "own" not in server.cards
-    for changed in ({"card": "contact"}, {"files": []}, {"files": None}, {"more": 1}):
+    wrong: list[dict[str, Any]] = [{"card": "contact"}, {"files": []}, {"files": None}, {"more": 1}]
+    for changed in wrong:
         refused = {"card": "own", "files": files} | changed
         assert post(server, question(**refused))[0] == 400
     empty = post(server, question(card="own", stage="open", files={}))[1]

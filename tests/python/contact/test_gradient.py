@@ -184,5 +184,7 @@ def test_the_old_name_of_the_peak_warns_and_gives_the_same(solution: nacre.Solut
         old = solution.gradient("located_peak")
     assert old == peak
     assert old.output == "peak_pressure"
-    error = solution.report.discretisation["peak_pressure"]
+    errors = solution.report.discretisation
+    assert errors is not None
+    error = errors["peak_pressure"]
     assert 0 < abs(peak.value / solution.peak_pressure - 1) < error

@@ -185,7 +185,7 @@ def test_fields_of_the_page_have_the_unit_of_a_bearing(name: str, key: str, unit
     value, unit = BEARINGS[name][1][key]
     place = f"bearing.{key}" + ("[1]" if isinstance(value, list) else "")
     field = field_of(case(name, units).data, place)
-    assert field.default is not None
+    assert isinstance(field.default, float)
     number, dimension = in_si(field.default, field.unit)
     assert dimension == unit
     assert_close(number, value[1] if isinstance(value, list) else value, rtol=1e-9)
@@ -310,7 +310,7 @@ def test_indentations_give_back_what_went_in(name: str, key: str, units: str) ->
     place = f"{key}[2]" if isinstance(value, list) else key
     expected = value[2] if isinstance(value, list) else value
     field = field_of(read.data, place)
-    assert field.default is not None
+    assert isinstance(field.default, float)
     typed, dimension = in_si(field.default, field.unit)
     assert dimension == unit
     assert_close(typed, max(value) if isinstance(value, list) else value, rtol=1e-9)

@@ -217,7 +217,7 @@ def test_fields_of_the_page_have_the_unit_of_the_keyword(name: str, units: str, 
     table, file = file_of(name, units, line)
     pair = isinstance(file.arguments()[name], tuple)
     field = field_of(file.data, f"{table}.{name}" + (f".{'y' if line else 'x'}" if pair else ""))
-    assert field.default is not None
+    assert isinstance(field.default, float)
     number, dimension = in_si(field.default, field.unit)
     assert dimension == keyword_units(*KEYWORDS, line=line)[name]
     expected = next(v for v in _parts((LINE if line else VALUES)[name]) if v)
