@@ -17,7 +17,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.groups import Group, keyword, keyword_units
 from nacre._tools.typing import Field
-from nacre._tools.units import Scale, rounded, travelled, written
+from nacre._tools.units import Scale, rounded, symbol, travelled, written
 from nacre.contact.arguments import Motion
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
@@ -619,6 +619,8 @@ class WearHistory(Shown, Result):
         units = keyword_units(Motion, Rates, line=contact.grid.is_line)
         for name, text in self.inputs.items():
             value = _value(text)
+            if isinstance(value, str) and units.get(name):  # of a history in parts
+                value = f"{text} {symbol(units[name])}"
             if name == "sliding" and isinstance(value, float):
                 rows.append(remark("sliding", travelled(value, "m")))
             elif name not in BODIES:

@@ -133,8 +133,8 @@ def test_a_map_asks_until_it_is_certain() -> None:
     assert surface.heights.shape == SIDES
     assert_close(surface.spacing, (0.5e-3, 0.5e-3), rtol=1e-12)
     assert_close(np.ptp(surface.heights), 1e-6 * np.ptp(HEIGHTS), rtol=0.5)  # less a plane
-    # The mean pressure is the template's: 5 N on 0.1 mm × 0.1 mm.
-    assert_close(card.case({}).data["solve"]["load"], 500 * 8e-3 * 6e-3, rtol=5e-3)
+    # The mean pressure is the template's: 1 N on 0.1 mm × 0.1 mm.
+    assert_close(card.case({}).data["solve"]["load"], 100 * 8e-3 * 6e-3, rtol=5e-3)
 
 
 def test_a_channel_is_asked_by_its_candidates() -> None:

@@ -212,7 +212,7 @@ def test_each_number_of_a_case_has_a_unit() -> None:
     plain = {
         *("count", "rows", "poisson", "rating_factor", "osculation", "tolerance", "end_factor"),
         *("max_iterations", "cells", "k1", "k2", "film_ratio", "viscosity_ratio", "share"),
-        *("contamination", "reliability"),
+        *("contamination", "reliability", "grade", "temperature"),
         "static_safety",
     }
 
@@ -439,7 +439,7 @@ def test_other_rollers_are_solved_and_swept(
         ),
         ('edge = "pressure"', 'edge = "sharp"', "bearing.life.edge: must be"),
         ("viscosity = 0.02", "viscocity = 0.02", "bearing.film.viscocity: there is no such key"),
-        ("viscosity = 0.02", "", "bearing.film.viscosity: this key is missing"),
+        ("viscosity = 0.02", "", "bearing.film.viscosity must be given, or the table bearing.oil"),
         ("speed = 8", 'speed = "fast"', "bearing.film.speed: must be a finite number"),
         ("speed = 8", 'speed = 8\nring = "cage"', "bearing.film.ring: must be"),
         (

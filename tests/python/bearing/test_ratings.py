@@ -431,7 +431,7 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     ({"spectrum": [(0.5, (1e3, 0.0, None), 1.0)]}, "shares that sum to 1, got 0.5"),
     ({"spectrum": [(1.0, (1e3, 0.0, None), 0.0)]}, r"speed of spectrum\[0\] must not be 0"),
     ({"spectrum": [(1.0, (None, 0.0, None), 1.0)]}, "must have a number along x"),
-    ({"spectrum": [(1.0, (1e3, 0.0, None), 1.0)], "speed": 1.0}, "must not be given beside spec"),
+    ({"spectrum": [(1.0, (1e3, 0.0, None), 1.0)], "speed": 1.0}, "must not be given with spec"),
     ({"edge": "sharp"}, 'edge must be "standard"'),
 ]
 

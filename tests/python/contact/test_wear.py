@@ -49,7 +49,7 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     assert history.deepest[-1, 0] == pytest.approx(2e-6, rel=1e-5)
     assert history.verdict().words.startswith("Worn through after ")
     assert history.verdict().lines[0].startswith("First worn through: DLC of the body, at y = ")
-    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
+    with pytest.warns(nacre.NacreWarning, match="a layer is worn through"):
         further = worn(sliding=1.2 * life.distance, steps=3, scheme="euler")
     assert further.life is not None
     # Three steps are late, and say so.
@@ -111,9 +111,9 @@ def test_a_store_of_something_else_is_refused(
 def test_a_history_goes_on_from_a_layer_that_is_through() -> None:
     """A depth beyond the coat is an event at 0; of a history, events come once, at its distance."""
     depth = np.full(GRID.shape, 3e-6)
-    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
+    with pytest.warns(nacre.NacreWarning, match="a layer is worn through"):
         begun = worn(initial=depth, until="through")
-    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
+    with pytest.warns(nacre.NacreWarning, match="a layer is worn through"):
         further = worn(initial=begun, until="through", sliding=10.0, scheme="euler")
     assert [event.distance for event in begun.events] == [0.0]
     # What was asked is answered, and nothing is required.
@@ -128,7 +128,7 @@ def test_a_history_goes_on_from_a_layer_that_is_through() -> None:
 
 
 @pytest.mark.filterwarnings("ignore:the contact is only 4 cells")
-@pytest.mark.filterwarnings("ignore:a layer is through")
+@pytest.mark.filterwarnings("ignore:a layer is worn through")
 @pytest.mark.parametrize("below", [0.0, 1e-17, 1e-15])
 def test_even_pressure_is_through_a_coat_at_the_exact_distance(below: float) -> None:
     """2 µm at 1e-17 m²/N and 100 MPa take 2000 m, whatever is below; half of it in one history."""
@@ -499,7 +499,7 @@ def test_the_error_by_the_thickness_keeps_free_ends() -> None:
 @pytest.mark.filterwarnings("ignore:the contact is only")
 def test_nothing_left_on_a_rigid_base_has_no_error_by_the_thickness() -> None:
     plate = nacre.HalfSpace(nacre.RIGID, layers=COATED.layers)
-    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
+    with pytest.warns(nacre.NacreWarning, match="a layer is worn through"):
         history = nacre.wear(
             ROLLER,
             plate,

@@ -198,6 +198,6 @@ def test_events_of_a_history_that_goes_on_count_from_its_beginning() -> None:
     # One of both cells beside the middle.
     assert np.abs(rest.life.position) == pytest.approx(np.abs(life.position))
     assert rest.events == rest.events[:1]
-    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
+    with pytest.warns(nacre.NacreWarning, match="a layer is worn through"):
         after = worn(sliding=10.0, steps=1, initial=rest)
     assert after.events == rest.events

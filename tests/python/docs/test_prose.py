@@ -1,6 +1,6 @@
 """Five habits that make prose hard to read may become rarer and not more frequent.
 
-`tests/data/prose.json` has the counts. `python tests/python/docs/test_prose.py` writes them;
+`tests/python/docs/prose.json` has the counts. `python tests/python/docs/test_prose.py` writes them;
 `python tests/python/docs/test_prose.py GROUP` prints every place of a group, such as docs/howto.
 """
 
@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-COUNTS = ROOT / "tests" / "data" / "prose.json"
+COUNTS = Path(__file__).with_name("prose.json")
 LONG = "30 words and more"
 HABITS = {
     "that of, the one": r"\b(?:that|those) of\b"
@@ -136,7 +136,7 @@ def test_the_habits_become_rarer(group: str) -> None:
     risen = {habit: n for habit, n in counts.items() if n > allowed[habit]}
     assert not risen, f"rewrite the new sentences of {group}; this file, run with it, lists them"
     fallen = {habit: n for habit, n in counts.items() if n < allowed[habit]}
-    assert not fallen, f"well done: lower these counts of {group} in tests/data/prose.json"
+    assert not fallen, f"well done: lower these counts of {group} in tests/python/docs/prose.json"
 
 
 @pytest.mark.parametrize(

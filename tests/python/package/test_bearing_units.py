@@ -6,6 +6,7 @@ Bearings are in SI, whatever the units of the case; indentations are in those th
 from __future__ import annotations
 
 import functools
+import math
 import re
 import warnings
 from collections.abc import Iterable
@@ -146,8 +147,18 @@ TIMED = {"mm/s": "m/s", "mm²/s": "m²/s", "MPa s": "Pa s", "1/MPa": "1/Pa", "MP
 """SI units of those with N, mm, MPa and seconds."""
 
 
+TURNED = {
+    **{"°": (math.pi / 180, "rad"), "′": (math.pi / 180 / 60, "rad")},
+    **{"/min": (2 * math.pi / 60, "rad/s")},
+}
+"""Units of angles and speeds of rotation in reports, in SI."""
+
+
 def in_si(number: float, unit: str) -> tuple[float, str]:
     """Return a number with a unit in SI, and its SI unit."""
+    if unit in TURNED:
+        size, turned = TURNED[unit]
+        return number * size, turned
     timed = TIMED.get(unit, unit)
     dimension, size = size_of(unit) or (timed, 1.0 if timed == unit else MILLIMETRES[timed])
     return number * size, dimension

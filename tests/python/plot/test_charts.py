@@ -219,7 +219,7 @@ def test_svg_turns_an_axis_with_its_ends() -> None:
 def test_svg_grades_colours_as_matplotlib_does() -> None:
     graded = chart("graded", "graded", "graded")
     groups = svg_of(graded).iter("g")
-    strokes = [style for group in groups if (style := group.get("style"))]
+    strokes = [stroke for group in groups if (stroke := group.get("stroke"))]
     for stroke, line in zip(strokes, draw(graded).lines, strict=True):
         colour: Any = line.get_color()
         red, green, blue = (int(stroke[-6:][k : k + 2], 16) / 255 for k in (0, 2, 4))

@@ -176,7 +176,7 @@ def test_text_shows_the_numbers_with_units() -> None:
     assert f"({x * 1e9:.4g} nm, {y * 1e9:.4g} nm)" in slid
     for said in ("creepage       (0.001, 0.0002)", "spin           3 /m", "towards -x"):
         assert said in rolled
-    assert "(0 N/m, 1 kN/m)" in line
+    assert "(0 kN/m, 1 kN/m)" in line
     assert "twist" not in line
     assert "all slips" in str(CONTACT.slide(BALL, **HELD, shift=(1e-3, 0.0)))
 

@@ -114,6 +114,8 @@ VALUES = MADE_BY_A_CALL | {
 
 OF_OTHERS = {"indentation"}
 """Attributes that are other objects, without an equality."""
+DEPRECATED = {"is_identifiable", "l10"}
+"""Old names, which warn."""
 PLAIN = {int, float, str, bool, type(None), np.ndarray}
 
 
@@ -131,7 +133,7 @@ def public_classes() -> set[type]:
 
 
 def attributes(value: object) -> dict[str, Any]:
-    names = [name for name in dir(value) if not name.startswith("_")]
+    names = [name for name in dir(value) if not name.startswith("_") and name not in DEPRECATED]
     return {name: getattr(value, name) for name in names if not callable(getattr(value, name))}
 
 

@@ -62,7 +62,7 @@ def test_lives_are_those_of_the_histories_and_nan_without_a_wear_through() -> No
     assert (study.warnings == "").all()
     beyond = nacre.sweep(CASE | {"until": None}, {"sliding": [250.0]})
     assert beyond.life[0] == pytest.approx(history.life.distance, rel=1e-4)
-    assert "a layer is through" in str(beyond.warnings[0].values)
+    assert "a layer is worn through" in str(beyond.warnings[0].values)
 
 
 def test_cycles_have_no_unit_and_functions_see_the_history() -> None:
