@@ -147,7 +147,8 @@ def test_balls_follow_from_the_ratings(
     bearing = card.case(line.values).arguments()["bearing"]
     capacity = float(read(text).values["C"])
     difference = compare_ratings(bearing, capacity=capacity).capacity
-    assert difference is not None and abs(difference) < 0.05
+    assert difference is not None
+    assert abs(difference) < 0.05
 
 
 @pytest.mark.parametrize(
