@@ -107,7 +107,8 @@ def menu_entries(name: str) -> list[tuple[str, str, dict[str, float | None]]]:
         r'<select class="material" data-material="(.*?)">(.*?)</select>', form, re.DOTALL
     ):
         for numbers, entry in re.findall(
-            r'<option data-numbers="(.*?)" data-source=".*?">(.*?)</option>', options
+            r'<option data-numbers="(.*?)" data-title=".*?" data-source=".*?">(.*?)</option>',
+            options,
         ):
             entries.append((material, entry, json.loads(html.unescape(numbers))))
     return entries
@@ -130,7 +131,7 @@ def test_menus_offer_materials_of_their_kind(name: str) -> None:
     for material, entry, _ in menu_entries(name):
         kinds.setdefault(material, set()).add(nacre.materials[entry].kind)
     for material, offered in kinds.items():
-        assert offered == {"coating" if material in ("coating", "film") else "body"}
+        assert offered == {"coating" if material in ("coating", "film", "dlc") else "body"}
 
 
 @pytest.mark.slow

@@ -272,7 +272,7 @@ def test_the_page_has_no_script_style_or_address_of_its_own(server: Server) -> N
 
 def test_every_field_has_a_label(server: Server) -> None:
     page = ask(server, "GET", "/")[2].decode()
-    names = re.findall(r'<input id="([^"]*)"', page)
+    names = re.findall(r'<(?:input|select) id="([^"]*)"', page)
     assert len(names) == len(set(names)) > 60
     assert set(re.findall(r'<label for="([^"]*)"', page)) == set(names)
     sliders = re.findall(r'<input type="range"[^>]*>', page)
@@ -298,7 +298,7 @@ def test_a_report_has_an_answer(server: Server) -> None:
 def test_an_older_question_is_given_up(server: Server, monkeypatch: Patch) -> None:
     calls = threading.Event()
 
-    def slow(case: object, stage: object, going: Any, fixed: object) -> dict[str, bool]:
+    def slow(case: object, stage: object, going: Any, *others: object) -> dict[str, bool]:
         calls.set()
         while going():
             time.sleep(0.01)
