@@ -984,7 +984,7 @@ def test_the_tilt_curve_is_odd_and_inverts_the_eccentricity() -> None:
 
 
 def test_an_unknown_option_of_a_helper_is_refused() -> None:
-    with pytest.raises(TypeError, match="force: no argument of"):
+    with pytest.raises(TypeError, match="unexpected keyword argument 'force', which neither"):
         design.load_curve(BALL, STEEL, [1.0], force=3)
 
 
