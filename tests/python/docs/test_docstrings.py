@@ -135,11 +135,22 @@ def modules_with_examples() -> list[str]:
     return [name for name in names if name != "nacre.torch"]
 
 
+class Finder(doctest.DocTestFinder):
+    """Finder of examples, also of functions of the module that users know by another name."""
+
+    def _from_module(self, module: Any, object: Any) -> bool:
+        if inspect.isfunction(object) and inspect.unwrap(object).__globals__ is vars(module):
+            return True
+        return bool(super()._from_module(module, object))  # type: ignore[misc]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", modules_with_examples())
 def test_the_examples_of_a_module_are_true(name: str) -> None:
     module = importlib.import_module(name)
     names = {**vars(module), "nacre": nacre, "np": np}
-    result = doctest.testmod(module, globs=names, optionflags=FLAGS)
-    assert result.attempted > 0
-    assert result.failed == 0
+    runner = doctest.DocTestRunner(optionflags=FLAGS)
+    for example in Finder().find(module, name, globs=names):
+        runner.run(example)
+    assert runner.tries > 0
+    assert runner.failures == 0
