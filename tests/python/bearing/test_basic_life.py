@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import nacre
+from bearings import ANGULAR, SPHERICAL, TAPERED, THRUST
 from nacre.app.answer import answer
 from nacre.bearing import (
     AngularContactBall,
@@ -24,8 +25,6 @@ from nacre.bearing import (
     DeepGrooveBall,
     Pair,
     PairLife,
-    SphericalRoller,
-    TaperedRoller,
     basic_life,
     contamination_range,
     equivalent_dynamic_load,
@@ -44,21 +43,6 @@ TURN = math.pi / 30
 """Angular velocity of a revolution per minute [rad/s]."""
 SKF_6309 = DeepGrooveBall(count=8, diameter=17.5e-3, pitch_diameter=72.5e-3, capacity=55.3e3)
 NU = CylindricalRoller(count=13, diameter=18e-3, length=18e-3, pitch_diameter=96e-3, capacity=137e3)
-ANGULAR = AngularContactBall(
-    count=12, diameter=10e-3, pitch_diameter=60e-3, contact_angle=math.radians(40)
-)
-TAPERED = TaperedRoller(
-    count=17, diameter=8e-3, length=11e-3, pitch_diameter=48e-3, contact_angle=math.radians(14)
-)
-SPHERICAL = SphericalRoller(
-    count=19,
-    diameter=12e-3,
-    length=11e-3,
-    pitch_diameter=82e-3,
-    contact_angle=0.17,
-    profile_radius=46.5e-3,
-)
-THRUST = replace(ANGULAR, contact_angle=math.radians(60))
 OIL: dict[str, Any] = {"kinematic_viscosity": 20e-6, "contamination": 0.8}
 
 

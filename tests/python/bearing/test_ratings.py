@@ -13,15 +13,13 @@ import numpy as np
 import pytest
 
 import nacre
+from bearings import ANGULAR, SPHERICAL, TAPERED, THRUST
 from nacre.bearing import (
-    AngularContactBall,
     BearingLife,
     BearingSolution,
     CylindricalRoller,
     DeepGrooveBall,
-    SphericalRoller,
     StaticLoad,
-    TaperedRoller,
     compare_ratings,
     contamination_range,
     equivalent_static_load,
@@ -40,21 +38,6 @@ ROLLERS = CylindricalRoller(
     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
 )
 BALLS = DeepGrooveBall(count=9, diameter=9.525e-3, pitch_diameter=46e-3)
-ANGULAR = AngularContactBall(
-    count=12, diameter=10e-3, pitch_diameter=60e-3, contact_angle=math.radians(40)
-)
-THRUST = replace(ANGULAR, contact_angle=math.radians(60))
-SPHERICAL = SphericalRoller(
-    count=19,
-    diameter=12e-3,
-    length=11e-3,
-    pitch_diameter=82e-3,
-    contact_angle=0.17,
-    profile_radius=46.5e-3,
-)
-TAPERED = TaperedRoller(
-    count=17, diameter=8e-3, length=11e-3, pitch_diameter=48e-3, contact_angle=math.radians(14)
-)
 LOADED = ROLLERS.solve(force=(4450.0, 0.0, None), speed=100.0, model="iso16281")
 BALL_LOADED = BALLS.solve(force=(3000.0, 0.0, 0.0), speed=50.0, model="iso16281")
 OIL: dict[str, Any] = {"viscosity_ratio": 2.0, "contamination": "normal cleanliness"}
