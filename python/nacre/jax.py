@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from typing import NamedTuple, NoReturn, Protocol, TypeAlias
 
@@ -10,6 +9,7 @@ import numpy as np
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.notices import warn
 from nacre._tools.typing import Body, Matrix, Vector
 from nacre.design.differentiable import SECOND, Array, Differentiable, Outputs
 
@@ -241,6 +241,6 @@ def _callback(function: Callable[..., Array], size: int, *arrays: jax.Array) -> 
 
 def _warn(message: str) -> None:
     try:
-        warnings.warn(message, core.NacreWarning, stacklevel=2)
+        warn(message)
     except core.NacreWarning:
         pass  # Warnings are errors here, and a callback must not raise: NaN has to tell it.

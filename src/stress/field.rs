@@ -69,16 +69,19 @@ impl fmt::Display for Percent {
     }
 }
 
+/// Factor from which on the size of the cells that are needed is not known to a factor of 2.
+const KNOWN_TIMES: f64 = 10.0;
+
 /// The cells that an error needs to fall by this factor, for messages. It falls as the steps of the pressure from cell to cell,
 /// which are as long as cells where the pressure is smooth: on four soft and hard coatings, the size named is within a factor
-/// of 2 of the one needed where it is below ten times smaller.
+/// of 2 of the one needed below [`KNOWN_TIMES`]; beyond, and for errors without a limit, no size is named.
 pub(super) struct SmallerCells(pub(super) f64);
 
 impl fmt::Display for SmallerCells {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0.ceil() {
-            times if times.is_finite() => write!(f, "cells {times} times smaller"),
-            _ => write!(f, "smaller cells"),
+            times if times < KNOWN_TIMES => write!(f, "cells {times} times smaller"),
+            _ => write!(f, "much smaller cells"),
         }
     }
 }

@@ -127,6 +127,7 @@ impl StressSummary {
     /// error above a quarter of them.
     pub fn warnings(&self) -> Vec<String> {
         let negligible = self.negligible_error();
+        let largest = negligible / NEGLIGIBLE_ERROR;
         // Compression everywhere is no tension to be known.
         let pulls = |peak: &&Peak| peak.value + peak.uncertainty.unwrap_or(0.0) > 0.0;
         // What is unresolved, and the factor by which its largest error has to fall.
@@ -138,7 +139,7 @@ impl StressSummary {
                 let excess = (ratio / UNRESOLVED_EXTREME).min(error / negligible);
                 let size = match ratio < 1.0 {
                     true => Percent(ratio).to_string(),
-                    false => format!("{error:.1e} Pa"),
+                    false => format!("{:.2} of the largest von Mises stress", error / largest),
                 };
                 (excess > 1.0).then(|| (format!("{name} by {size}"), excess))
             };
@@ -1280,6 +1281,41 @@ mod tests {
     use crate::error::Result;
     use crate::model::body::Layer;
     use crate::model::material::Elastic;
+
+    /// Errors below an extreme are in per cent of it, larger ones over the largest von Mises stress, in no unit. No size of
+    /// cells is named where it is not known.
+    #[test]
+    fn warnings_say_the_size_of_errors() {
+        let peak = |value: f64, uncertainty: f64| Peak {
+            value,
+            position: [0.0; 3],
+            uncertainty: Some(uncertainty),
+        };
+        let summary = |tension: Peak| StressSummary {
+            layers: vec![LayerSummary {
+                layer: 0,
+                name: None,
+                depths: [0.0, 1.0],
+                von_mises: peak(10.0, 0.1),
+                tension,
+                shear: peak(5.0, 0.1),
+                yield_safety_factor: None,
+                strength_safety_factor: None,
+            }],
+            ..StressSummary::default()
+        };
+        let warnings = |value, error| summary(peak(value, error)).warnings();
+        // A quarter of the extreme, or 2 % of the largest von Mises stress, is enough.
+        assert_eq!(warnings(4.0, 0.9), [] as [&str; 0]);
+        let start = "the extremes in layers[0] are uncertain, tension by";
+        let end = "due to the size of the cells: take";
+        assert_eq!(warnings(1.0, 0.6), [format!("{start} 60 %, {end} cells 3 times smaller")]);
+        let size = "0.30 of the largest von Mises stress";
+        let smaller = "cells 6 times smaller";
+        assert_eq!(warnings(2.0, 3.0), [format!("{start} {size}, {end} {smaller}")]);
+        let size = "600.00 of the largest von Mises stress";
+        assert_eq!(warnings(2.0, 6e3), [format!("{start} {size}, {end} much smaller cells")]);
+    }
 
     /// Where the thickness is the half-width, some depths come from both lists: each is a place once.
     #[test]

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import sys
-import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 
 import nacre._core as core
 
-HEARING = threading.Lock()
-"""Lock of the filters of warnings, which all threads share."""
+_HEARD: ContextVar[list[str] | None] = ContextVar("heard", default=None)
+"""Texts of warnings that are not shown: filters of `warnings` belong to all threads."""
 PACKAGE = str(Path(core.__file__).parent)
 
 
 def warn(message: str, category: type[Warning] = core.NacreWarning) -> None:
     """Issue a warning, by default a `NacreWarning`, of the call that entered the package."""
+    texts = _HEARD.get()
+    if texts is not None and category is core.NacreWarning:
+        texts.append(message)
+        return
     level, frame = 1, sys._getframe()
     while frame is not None and frame.f_code.co_filename.startswith(PACKAGE):
         level, frame = level + 1, frame.f_back  # type: ignore[assignment]
@@ -26,14 +30,10 @@ def warn(message: str, category: type[Warning] = core.NacreWarning) -> None:
 
 @contextmanager
 def heard() -> Iterator[list[str]]:
-    """Yield a list to which the warnings of nacre in this thread are added, not shown."""
-    texts, thread = list[str](), threading.get_ident()
-
-    def add(message: Warning | str, *_: object, **__: object) -> None:
-        if threading.get_ident() == thread:
-            texts.append(str(message))
-
-    with HEARING, warnings.catch_warnings():
-        warnings.simplefilter("always", core.NacreWarning)
-        warnings.showwarning = add
+    """Yield a list to which nacre's warnings are added, not shown, here and in `thread_pool`."""
+    texts = list[str]()
+    token = _HEARD.set(texts)
+    try:
         yield texts
+    finally:
+        _HEARD.reset(token)

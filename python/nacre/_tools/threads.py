@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextvars import copy_context
 from typing import Any
 
 CAN_START = sys.platform != "emscripten"
@@ -13,7 +14,14 @@ CAN_START = sys.platform != "emscripten"
 
 def thread_pool(count: int) -> Executor:
     """Return a pool of `count` threads; without threads, what is submitted runs at once."""
-    return ThreadPoolExecutor(count) if CAN_START else _AtOnce()
+    return _Threads(count) if CAN_START else _AtOnce()
+
+
+class _Threads(ThreadPoolExecutor):
+    """Runs what is submitted in the context of the call that submits it."""
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **named: Any) -> Future[Any]:
+        return super().submit(copy_context().run, function, *args, **named)
 
 
 class _AtOnce(Executor):

@@ -33,7 +33,7 @@ from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
 from nacre.indent.solution import UNITS
 from nacre.results import display
 from nacre.results.charts import NO_EDGE, Axis, Chart, Curve, Look, Picture, section
-from nacre.results.report import Rows
+from nacre.results.report import Rows, in_words
 from nacre.results.rows import Row
 from nacre.results.svg import drawing
 from nacre.results.verdict import Verdict, verdict_on
@@ -54,7 +54,8 @@ STAGES = ("draft", *NEXT.values(), "finer")
 FINER, LARGEST_ERROR = 2, 0.2
 """Cells along a side in place of one, and largest error of stresses, of the last stage."""
 COARSE = re.compile(
-    r"(?:take|give) (?:a finer (?:or larger )?grid|cells [\d.]+ times smaller|smaller cells)"
+    r"(?:take|give) (?:a finer (?:or larger )?grid|cells [\d.]+ times smaller|"
+    r"(?:much )?smaller cells)"
 )
 """Advice of warnings that the button follows."""
 ROLLER_CELLS, FEWEST_CELLS = 12288, 4096
@@ -106,10 +107,6 @@ PLACES = {
     "ring_capacities": ("inner ring", "outer ring"),
 }
 """Words for the components of quantities."""
-PASCALS = re.compile(r"\bby ([\d.e+-]+) Pa\b")
-"""An error of a stress in a warning, in the unit of the case."""
-MEMBER = re.compile(r"\b(layer|interface)s\[(\d+)\]")
-"""A layer or an interface by its number, which begins with 0."""
 EXPONENT = re.compile(r"\d[\d.]*e\+\d+")
 """A large number."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
@@ -209,7 +206,7 @@ def answer(
                 return {"report": _report(case, arguments, wanted, measured)}
             with chosen(shown or {}):
                 reply = SOLVERS[case.kind](case, arguments, stage, wanted)
-                reply["parts"]["warnings"] = list(map(_with_unit, reply["parts"]["warnings"]))
+                reply["parts"]["warnings"] = list(map(in_words, reply["parts"]["warnings"]))
     except ERRORS as error:
         wanted()
         return {"error": " ".join(str(error).split())[:600] or type(error).__name__}
@@ -497,16 +494,6 @@ def _extremes(summary: nacre.types.StressSummary) -> list[Row]:
     return rows
 
 
-def _with_unit(warning: str) -> str:
-    """Return a warning whose stresses have the unit of the page."""
-    text = PASCALS.sub(lambda error: f"by {display.number(float(error[1]), 'Pa', 2)}", warning)
-    return MEMBER.sub(_member, text)
-
-
-def _member(match: re.Match[str]) -> str:
-    return f"{match[1]} {int(match[2]) + 1}"
-
-
 def _worded(row: Row, is_ring: bool) -> Row | None:
     """Return a row in words, components with their names; None of one that says nothing.
 
@@ -521,7 +508,7 @@ def _worded(row: Row, is_ring: bool) -> Row | None:
         words = PLACES["rotation" if is_ring and row.key == "tilt" else row.key]
         parts = zip(display.without_rounding(value), words, strict=True)
         text = ", ".join(f"{_component(row, part)} {place}" for part, place in parts if part)
-    text = EXPONENT.sub(lambda large: plain(float(large[0]), 4), MEMBER.sub(_member, text))
+    text = EXPONENT.sub(lambda large: plain(float(large[0]), 4), in_words(text))
     return row._replace(label=LABELS.get(row.key, row.label), text=text) if text else None
 
 

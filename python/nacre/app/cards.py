@@ -7,7 +7,6 @@ import dataclasses
 import functools
 import math
 import tomllib
-import warnings
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ import numpy as np
 
 import nacre
 import nacre._core as core
+from nacre._tools.notices import heard
 from nacre._tools.typing import AnyPath
 from nacre.app.answer import NONE, Measured
 from nacre.app.fields import LIMITS, Field, FieldError, entry_at, field_of, keys_of, tidy
@@ -193,8 +193,7 @@ def _are_equal(table: Data, numbers: Any) -> bool:
 @functools.cache
 def _tables(units: str) -> dict[str, Data]:
     """Return the numbers of all known materials in the units of a case."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # which the page shows as a source
+    with heard():  # which the page shows as a source
         return {
             name: material_of(name, units).model_dump(exclude_none=True) for name in nacre.materials
         }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
@@ -102,11 +101,9 @@ def _difference(name: str, printed: float | None, own: float, standard: str) -> 
         return None
     difference = above(name, printed) / own - 1
     if abs(difference) > TOLERANCE:
-        warnings.warn(
+        warn(
             f"{name} of the catalogue, {printed:.6g} N, differs by {100 * difference:+.2g} % from "
-            f"that of {standard} for this geometry, {own:.6g} N",
-            core.NacreWarning,
-            stacklevel=3,
+            f"that of {standard} for this geometry, {own:.6g} N"
         )
     return difference
 

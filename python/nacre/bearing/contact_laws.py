@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import copy
 import math
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.notices import heard
 from nacre._tools.rounding import ceil, floor
 from nacre._tools.threads import thread_pool
 from nacre.bearing.geometry import RINGS, STEEL, Bearing, laminae_of
@@ -337,8 +337,7 @@ class Solved:
             return
         elements = {heaviest, light if sums[light] < ALIKE * sums[heaviest] else heaviest}
         keys = [(element, ring) for element in sorted(elements) for ring in range(len(RINGS))]
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", core.NacreWarning)
+        with heard():
             for key in keys:
                 solution = self._solution(key, places[key], None)
                 self.last[key] = places[key].copy(), solution, np.zeros((2, 2)), None
@@ -406,8 +405,7 @@ class Solved:
         cells = contact.grid.shape[0] // 2, contact.grid.shape[1] // 2
         plan = Contact(body, core.Grid(cells, contact.grid.size), counterbody)
         moment = contact.moment[0] if self.bearing.carries_moments else None
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", core.NacreWarning)
+        with heard():
             try:
                 return plan.solve(
                     self.shapes[ring],
@@ -447,8 +445,7 @@ class Solved:
         solved: dict[tuple[int, int], tuple[Array, Solution, Array, Array | None]] = {}
         pool = thread_pool(self.workers)
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", core.NacreWarning)
+            with heard():
                 futures = [
                     pool.submit(self._solve, group[0], places[group[0]], rough.get(group[0]))
                     for group in groups

@@ -10,13 +10,13 @@ seen in public programs, or derived here.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 
 import numpy as np
 
 import nacre._core as core
 from nacre._tools.groups import with_units
+from nacre._tools.notices import warn
 from nacre._tools.units import symbol
 from nacre.bearing.geometry import above
 from nacre.contact.solution import Solution, check_unyielded
@@ -303,7 +303,7 @@ def film_thickness(
     excesses = [] if line else _excesses({"U": u, "W": w, "G": g, "k": k})
     notes = list(_doubts(regime, viscous, elastic, excesses, ratio, coat > along / 4))
     for text in notes:
-        warnings.warn(text, core.NacreWarning, stacklevel=2)
+        warn(text)
     if 0 < coat <= along / 4:
         notes.append(COATED)
     names = "Dowson and Toyoda; Dowson and Higginson" if line else "Hamrock and Dowson"

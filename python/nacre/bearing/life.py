@@ -12,7 +12,6 @@ with the original.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
@@ -22,6 +21,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import read_fields
+from nacre._tools.notices import heard, warn
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import Member
 from nacre.bearing.film import is_line
@@ -439,8 +439,7 @@ def stress_volume(
                 sums.append(0.0)
                 continue
             z, weights = _nodes(first, last)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", core.NacreWarning)  # the change says it
+            with heard():  # the change says it
                 highest = _maxima(rule.shear(plan.stress(z)))
             highest = np.nan_to_num(highest)  # beyond a free end there is nothing
             above = np.maximum(highest - rule.limit, 0.0)
@@ -451,8 +450,7 @@ def stress_volume(
         change += sum(sums[1:])
     extremes, notes = (0.0, 0.0, 0.0), tuple[str, ...]()
     if plan.body.layers:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", core.NacreWarning)
+        with heard():
             summary = plan.summary()
         coats = [layer.tension[0] for layer in summary.layers[: len(plan.body.layers)]]
         shears = [interface.shear[0] for interface in summary.interfaces]
@@ -531,13 +529,13 @@ def life_ratio(
     if volume.integral == 0:
         ratio = math.inf
         text = "the life is infinite in this model: no stress is above the fatigue limit"
-        warnings.warn(text, core.NacreWarning, stacklevel=2)
+        warn(text)
         notes = (*notes, text)
     else:
         ratio = (standard.integral / volume.integral) ** (1 / volume.slope)
     if standard.integral == 0:
         text = "the ratio is 0: no stress of the reference is above the fatigue limit"
-        warnings.warn(text, core.NacreWarning, stacklevel=2)
+        warn(text)
         notes = (*notes, text)
     models = model.values() if isinstance(model, Mapping) else [model]
     kinds = OF_RINGS if isinstance(solution, BearingSolution) else " of contacts, "

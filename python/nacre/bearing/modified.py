@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import warnings
 from collections import deque
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.notices import heard, warn
 from nacre.bearing.geometry import LARGEST, RINGS, Bearing, Ring, above
 from nacre.bearing.iso import is_thrust
 from nacre.bearing.kinds import CurvedRaceways, RollerBearing, checked_bearing
@@ -193,7 +193,7 @@ def _usual_pitch(pitch_diameter: float) -> float:
             f"pitch_diameter must be at most {most:g} m, got {pitch_diameter!r} m: is it in mm?"
         )
     for text in doubts_on("pitch_diameter", pitch):
-        warnings.warn(text, core.NacreWarning, stacklevel=3)
+        warn(text)
     return pitch
 
 
@@ -330,11 +330,9 @@ def fatigue_load_limit(bearing: Bearing) -> float:
     else:
         load = element_load(bearing, LIMIT)
     if load is None:
-        warnings.warn(
+        warn(
             "the fatigue load limit is C_0/8.2: the pressure of the contact has no limit at its "
-            "ends, a profile gives it one",
-            core.NacreWarning,
-            stacklevel=2,
+            "ends, a profile gives it one"
         )
         return simple_fatigue_load_limit(bearing)
     return total_load(bearing, load, bearing.standards.limit_share) * _size_factor(bearing)
@@ -394,8 +392,7 @@ def _contact_load(bearing: RollerBearing, ring: Ring) -> float | None:
     plan = Contact(body, bearing.grid(ring, line, CELLS), counterbody)
     power, contact, last = 2.0, None, None
     for _ in range(STEPS):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", core.NacreWarning)
+        with heard():
             contact = plan.solve(bearing.shape(ring), load=load, initial=contact)
         peak = contact.peak_pressure
         if not SINGULAR.isdisjoint(contact.report.warning_kinds):

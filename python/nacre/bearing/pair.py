@@ -7,7 +7,6 @@ kinematics are those of the single bearings; each ring is set along the axis by 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, Unpack, get_args
@@ -15,9 +14,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, Unpack, get_args
 import numpy as np
 import numpy.typing as npt
 
-import nacre._core as core
 from nacre._tools.arguments import read_fields
 from nacre._tools.groups import grouped, in_unit, keyword_units, names_itself
+from nacre._tools.notices import heard
 from nacre._tools.typing import among
 from nacre._tools.units import rounded
 from nacre.bearing.arguments import BearingKeywords, BearingOptions, Operation, RingConditions
@@ -407,8 +406,7 @@ def solve_pair(
     """Return the solution of what a user asked of a pair."""
     for bearing in pair.bearings:
         operation, options = operation.checked(bearing), options.checked(bearing)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", core.NacreWarning)
+    with heard():
         limit = max(PRELOAD_STEPS, options.max_iterations)
         quiet = replace(options, max_iterations=limit, progress=None, check=True)
         settings = _settings(pair, quiet)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import warnings
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ import typer
 
 import nacre
 from nacre._tools.disk import FILMS, PICTURES, replacing
+from nacre._tools.notices import heard
 from nacre._tools.progress import alive
 from nacre._tools.units import printable, system
 from nacre.bearing.pair import NAMES
@@ -91,8 +91,7 @@ def _solve_bearing(case: Path, case_file: Case, save: Sequence[Path], as_json: b
                 f"{case}: --save of a bearing must end in .nc, .csv, .html or as a picture"
             )
         _check_ending(path, SAVED["contact"])
-    with warnings.catch_warnings(), alive():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
+    with heard(), alive():  # the printed solution has them
         results = results_of(case_file, case_file.arguments())
     solution = results["bearing"]
     added = {name: result for name, result in results.items() if result is not solution}
@@ -165,8 +164,7 @@ def _is_open(result: object) -> bool:
 
 def _solved(case_file: Case, arguments: dict[str, object]) -> dict[str, Any]:
     """Return the results of a case, without warnings: what is printed has them."""
-    with warnings.catch_warnings(), alive():
-        warnings.simplefilter("ignore", nacre.NacreWarning)
+    with heard(), alive():
         return results_of(case_file, arguments)
 
 
@@ -234,8 +232,7 @@ def sweep(
     for path in save:
         if path.suffix.lower() not in (".csv", ".html"):
             raise CaseError(f"--save must end in .csv or .html, got {str(path)!r}")
-    with nacre.display_units(case_file.units), warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", nacre.NacreWarning)
+    with nacre.display_units(case_file.units), heard() as caught:
         try:
             dataset = nacre.sweep(case_file, retry=retry, **study)
         except (ArithmeticError, TypeError, ValueError) as error:
@@ -247,7 +244,7 @@ def sweep(
         with shown_in(case_file.units):
             _print_study(dataset)
         where = f"; all in {study['store']}" if "store" in study else ""
-        for text in (str(warning.message) for warning in caught):
+        for text in caught:
             if " cases failed" not in text:  # the last line says that
                 print(text)
         print(f"{dataset.error.size} cases, {failed} failed{where}")
@@ -280,8 +277,7 @@ def _solve_indentation(case: Path, case_file: Case, save: Sequence[Path], as_jso
                 f"--save must end in .nc, .csv or .html for an indentation, got {str(path)!r}"
             )
     arguments = case_file.arguments()
-    with nacre.display_units(case_file.units), warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
+    with nacre.display_units(case_file.units), heard():  # the printed solution has them
         with alive():
             results = results_of(case_file, arguments)
             solution = results["indent"]

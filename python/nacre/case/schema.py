@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +13,7 @@ from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
 from nacre._core import Free, Rigid
+from nacre._tools.notices import warn
 from nacre._tools.typing import Member
 from nacre._tools.units import System
 from nacre.cards import Card, unknown
@@ -73,7 +73,7 @@ def material_of(name: str, units: str) -> Material:
     card = nacre.materials[name]
     if card.kind == "coating":
         young = card.numbers["young"]
-        warnings.warn(f"{name} has Young's modulus {young}", nacre.NacreWarning, stacklevel=2)
+        warn(f"{name} has Young's modulus {young}")
     numbers = card._scaled(System(units).unit("Pa")[0]).numbers
     return Material(**{k: n.value for k, n in numbers.items() if k in Material.model_fields})
 

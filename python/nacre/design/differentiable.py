@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import threading
-import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.notices import warn
 from nacre._tools.paths import DIFFERENTIABLE, holder, put
 from nacre.contact import Contact
 from nacre.contact.gradient import Gradient, Output
@@ -60,7 +60,7 @@ class Point:
         sentences = {sentence for gradient in gradients for sentence in gradient.warnings}
         fresh, self.issued = sentences - (self.issued or set()), sentences | (self.issued or set())
         for sentence in sorted(fresh):
-            warnings.warn(sentence, core.NacreWarning, stacklevel=2)
+            warn(sentence)
 
 
 class Recent(Generic[Value]):

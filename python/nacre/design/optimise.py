@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import sys
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.notices import heard
 from nacre._tools.progress import lasting
 from nacre.contact.gradient import Output
 from nacre.contact.solution import Solution
@@ -270,8 +270,7 @@ def optimise(
     course = _Course(problem, progress)
     termination = "converged"
     quiet = (lambda _: None) if isinstance(progress, bool) else progress
-    with lasting("optimum", quiet) as course.tell, warnings.catch_warnings():
-        warnings.filterwarnings("ignore", category=core.NacreWarning)  # the optimum has them
+    with lasting("optimum", quiet) as course.tell, heard():  # the optimum has them
         try:
             for stage in grids:
                 problem.begin(x, stage)

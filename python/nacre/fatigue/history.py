@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -11,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.notices import heard
 from nacre._tools.rounding import ceil, floor
 from nacre._tools.typing import Direction, Member, Pair, Side, components
 from nacre.contact.friction import FrictionSolution
@@ -234,8 +234,7 @@ class Rolling:
         x: float | None,
         y: float | None = None,
     ) -> Stress:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", core.NacreWarning)
+        with heard():
             return self.plan.stress(
                 depths, side=side, x=x, y=y, friction=slide, direction=self.direction
             )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Self
 
@@ -10,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real
 from nacre._tools.units import written
@@ -306,7 +306,7 @@ def shakedown_map(
         if tell is not None:
             tell(1.0)
     for text in warning_texts:
-        warnings.warn(text, core.NacreWarning, stacklevel=2)
+        warn(text)
     is_estimate = assessment.rolling.x is not None
     return ShakedownMap(
         coefficients, limits, first, deciding, names, rule, peak, is_estimate, tuple(warning_texts)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -13,6 +12,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import keyword_units, with_units
+from nacre._tools.notices import warn
 from nacre._tools.paths import by_layer
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
@@ -946,7 +946,7 @@ def _summarise(
         assessment.rolling.caution,
     )
     for text in warning_texts:
-        warnings.warn(text, core.NacreWarning, stacklevel=3)
+        warn(text)
     return summary
 
 

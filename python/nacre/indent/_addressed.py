@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
@@ -11,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.notices import heard
 from nacre._tools.paths import numbered, numbers
 from nacre.indent.solution import Indentation, IndentCurve
 
@@ -87,6 +87,5 @@ class System:
     def curve(self, approach: Array, wrt: Sequence[str] = ()) -> IndentCurve:
         """Return the loads at these approaches, without issuing the warnings that they hold."""
         indentation = Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", core.NacreWarning)  # of places on the way to a fit
+        with heard():  # of places on the way to a fit
             return indentation.curve(approach=approach, wrt=wrt)

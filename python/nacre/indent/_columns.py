@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -13,6 +12,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import name_or_number
+from nacre._tools.notices import warn
 from nacre._tools.text import Column, listed, unit_of
 from nacre.indent._text import Table
 
@@ -76,11 +76,7 @@ def quantities(
     if spring_constant is not None:
         depth = -(depth + force / spring_constant)
     if time is not None and choices["time"] is None and (np.diff(time) < 0).any():
-        warnings.warn(
-            f"the time of {where} was left out, since it falls; time= can choose another column",
-            core.NacreWarning,
-            stacklevel=3,
-        )
+        warn(f"the time of {where} was left out, since it falls; time= can choose another column")
         time = None
     return depth, force, time
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import warnings
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-import nacre._core as core
+from nacre._tools.notices import warn
 from nacre._tools.typing import among
 from nacre.indent._segments import NOISE_RANGE, OUTLIER, noise_of
 from nacre.indent.curves import Curve
@@ -50,7 +49,7 @@ NARROWINGS = 60
 """Golden sections after which the zero is known to 0.618⁶⁰ = 3e-13 of two candidates' distance."""
 
 
-def check(curve: Curve, *, stacklevel: int = 2) -> None:
+def check(curve: Curve) -> None:
     """Refuse a curve without contact, and warn of unloading and of points out of order.
 
     Fits call it with the data that they are given.
@@ -59,8 +58,6 @@ def check(curve: Curve, *, stacklevel: int = 2) -> None:
     ----------
     curve : Curve
         Curve, loading or unloading.
-    stacklevel : int
-        Call to which warnings are attributed, as in `warnings.warn`.
 
     Returns
     -------
@@ -103,10 +100,9 @@ def check(curve: Curve, *, stacklevel: int = 2) -> None:
             f"no contact, or its force has the other sign"
         )
     if _is_shuffled(depth):
-        _warn(
+        warn(
             f"depths{name} are in random order; np.argsort(depth, kind='stable') orders them, and "
             f"drift can only be fitted to points in the order of the measurement",
-            stacklevel,
         )
         return
     noise = noise_of(force)
@@ -119,16 +115,11 @@ def check(curve: Curve, *, stacklevel: int = 2) -> None:
     fall = _fall(depth, force)
     if fall is not None and _fall(depth[::-1], force[::-1]) is not None:
         index, which = fall
-        _warn(
+        warn(
             f"{which} falls from index {index} on{name}, at depth {depth[index]:.4g} and force "
             f"{force[index]:.4g}: unloading is mixed in, or points are out of order; "
             f"curve.loading() is the part that rises to the largest force",
-            stacklevel,
         )
-
-
-def _warn(message: str, stacklevel: int) -> None:
-    warnings.warn(message, core.NacreWarning, stacklevel=stacklevel + 1)
 
 
 def _is_shuffled(depth: Array) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Literal
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.notices import heard, warn
 from nacre._tools.paths import numbered
 from nacre._tools.progress import lasting
 from nacre._tools.typing import among
@@ -169,7 +169,7 @@ def fit(
     system = system.with_values({name: value for name, (value, _) in known.items()})
     doubts = _doubts(curves, system)
     for text in doubts:
-        warnings.warn(text, core.NacreWarning, stacklevel=2)
+        warn(text)
 
     def new_model(noise: Noise, floor: float = 0.0) -> Model:
         return Model(
@@ -224,7 +224,7 @@ def _model_fit(
                 minima.append((x, chi2))
     examination = examine(model, best)
     for text in examination.warnings:
-        warnings.warn(text, core.NacreWarning, stacklevel=3)
+        warn(text)
     ends: dict[str, tuple[float, float]] = {}
     if profile and not examination.warnings:
         for k, unknown in enumerate(model.unknowns):
@@ -287,12 +287,11 @@ def _checked_known(
 
 def _doubts(curves: Sequence[Curve], system: System) -> list[str]:
     """Return warnings about curves, and refuse those without contact."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", core.NacreWarning)
+    with heard() as caught:
         for curve in curves:
             check(curve)
             _check_units(curve, system)
-    return [str(warning.message) for warning in caught if warning.category is core.NacreWarning]
+    return caught
 
 
 def _check_units(curve: Curve, system: System) -> None:
@@ -318,7 +317,7 @@ def _check_units(curve: Curve, system: System) -> None:
     sentence = suspicious_units(curve, tip_size=size, modulus=modulus)
     if sentence is not None:
         name = f" of {curve.name!r}" if curve.name else ""
-        warnings.warn(f"{sentence}{name}", core.NacreWarning, stacklevel=4)
+        warn(f"{sentence}{name}")
 
 
 def _start(model: Model) -> Array:
@@ -432,7 +431,7 @@ def _result(
     system = model.system_at(x)
     curve_warnings = system.curve(approach).warnings
     for sentence in curve_warnings:
-        warnings.warn(sentence, core.NacreWarning, stacklevel=3)
+        warn(sentence)
     return Fit(
         estimates=model.values(x),
         standard_errors={n: float(s) for n, s in zip(model.names, spread * rates, strict=True)},

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copyreg
 import math
 import types
-import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +15,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import with_units
+from nacre._tools.notices import warn
 from nacre._tools.paths import numbered
 from nacre._tools.progress import check_progress
 from nacre._tools.typing import Field, Layers, Matrix, Vector, among
@@ -187,7 +187,6 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         variable: Variable,
         branch: Branch,
         control: Control,
-        stacklevel: int = 4,
         tolerance: float | None = None,
     ) -> Self:
         """Return contacts of the compiled module, and issue their warnings."""
@@ -213,7 +212,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
             _states=states,
         )
         for message in messages:
-            warnings.warn(message, core.NacreWarning, stacklevel=stacklevel)
+            warn(message)
         return solution
 
     @cached_property
@@ -732,7 +731,7 @@ class Indentation:
         """
         curve = IndentCurve(*self._planned.curve(approach, self._numbered(wrt)))
         for message in curve.warnings:
-            warnings.warn(message, core.NacreWarning, stacklevel=2)
+            warn(message)
         return curve
 
     def _numbered(self, paths: Sequence[str]) -> list[str]:
@@ -777,7 +776,7 @@ class Indentation:
         begin to attract each other ("approach"): 0 for JKR's adhesion, -work/strength for Maugis's.
         """
         states = self._planned.snap_in(control)
-        return IndentSolution._of(self, states, control, "stable", control, stacklevel=3)
+        return IndentSolution._of(self, states, control, "stable", control)
 
     def work_from_pull_off(self, force: float, control: Control = "load") -> float:
         """Return the work of adhesion [J/m^2] from the force of pull-off [N], above 0.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.notices import warn
 from nacre.indent._segments import NOISE_RANGE, OUTLIER, noise_of
 from nacre.indent.curves import LEAST_POINTS, Curve
 from nacre.results.quantities import frozen, quantity
@@ -234,7 +234,7 @@ def oliver_pharr(
     power_error = math.sqrt(float(covariance[2, 2]))
     notes = _notes(branch, load, slope, power, power_error)
     for note in notes:
-        warnings.warn(note, core.NacreWarning, stacklevel=2)
+        warn(note)
     return OliverPharr(
         hardness=hardness,
         hardness_error=float(errors[0]),

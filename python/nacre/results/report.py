@@ -9,7 +9,6 @@ from __future__ import annotations
 import datetime
 import math
 import re
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -19,9 +18,9 @@ from typing import Any, NamedTuple, Protocol, TypeGuard
 import numpy as np
 import numpy.typing as npt
 
-import nacre._core as core
 from nacre._tools.disk import name_of
 from nacre._tools.markup import Markup, Parts, text_of
+from nacre._tools.notices import heard
 from nacre._tools.units import rounded, symbol
 from nacre.results import charts, display, svg, tables
 from nacre.results.parameters import VALUES
@@ -141,14 +140,13 @@ def text(
     The first result takes keywords of stresses for its picture over depth. `signed` has texts of
     the head, by the names in `SIGNED`.
     """
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", core.NacreWarning)
+    with heard() as caught:
         judgements = list(verdicts(results))
         sections = [
             results[0]._sections(**(stress or {})),
             *(result._sections() for result in results[1:]),
         ]
-    notes = [Sections("", inputs, warnings=[str(warning.message) for warning in caught])]
+    notes = [Sections("", inputs, warnings=caught)]
     today = datetime.date.today().isoformat()
     return page(name, today, [*sections, *notes], judgements, case, signed)
 

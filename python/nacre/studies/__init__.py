@@ -8,7 +8,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import nacre._core as core
 from nacre._tools.arguments import keywords_of
 from nacre._tools.extras import extra
+from nacre._tools.notices import heard, warn
 from nacre._tools.paths import holder, numbers
 from nacre._tools.progress import case_progress
 from nacre._tools.threads import thread_pool
@@ -215,11 +216,9 @@ def sweep(
     identity = identity_of(checked_outputs, stress_options, fatigue_options, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:
-        warnings.warn(
-            UNCOMPARED.format(", ".join(identity.unknown)), core.NacreWarning, stacklevel=2
-        )
+        warn(UNCOMPARED.format(", ".join(identity.unknown)))
     journal = Journal(path.with_suffix(".journal") if path else None)
-    with journal, _quiet():
+    with journal, heard():  # the Dataset has them
 
         def is_stored(key: str) -> bool:
             record = journal.records.get(key)
@@ -248,7 +247,7 @@ def sweep(
             with replacing(path) as temporary:
                 write_dataset(dataset, temporary, STUDY)
     for line in failure_lines(records):
-        warnings.warn(line, core.NacreWarning, stacklevel=2)
+        warn(line)
     return dataset
 
 
@@ -618,11 +617,3 @@ def _reason(error: Exception) -> str:
     """Return an error as a text that every file can hold."""
     text = f"{type(error).__name__}: {error}".replace("\0", "\\0")
     return text.encode("utf-8", "backslashreplace").decode()
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep nacre's warnings off the screen; the Dataset has them."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", category=core.NacreWarning)
-        yield

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from pathlib import Path
 from typing import Literal
 
@@ -12,6 +11,7 @@ import numpy.typing as npt
 
 from nacre import _core as core
 from nacre._tools.arguments import name_or_number
+from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
 from nacre._tools.typing import AnyPath, Pair, Topography
 from nacre.surfaces import heights as _heights
@@ -235,11 +235,7 @@ def _filled_heights(name: str, heights: Array, detrend: str, wraps: tuple[bool, 
         raise ValueError(
             f"{name} must have at least half its points measured, got {measured} of {heights.size}"
         )
-    warnings.warn(
-        f"{count} of {heights.size} heights are missing and were filled smoothly from around them",
-        core.NacreWarning,
-        stacklevel=4,
-    )
+    warn(f"{count} of {heights.size} heights are missing and were filled smoothly from around them")
     trend = _trend(heights, detrend if any(wraps) else "none")
     with lasting(f"filling {count} heights") as tell:
         return harmonic(heights - trend, wraps, tell or (lambda share: None)) + trend

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre import _core as core
+from nacre._tools.notices import warn
 from nacre._tools.text import decoded, is_text
 from nacre._tools.typing import Vector
 from nacre._tools.units import written
@@ -214,11 +214,9 @@ def _sizes(
         units[1] = bracket[1]
     if units[0] is not None and units[1] is None and metres(units[0]) is not None:
         units[1] = units[0]
-        warnings.warn(
+        warn(
             f"the heights of {str(path)!r} name no unit, and were read in that of the positions, "
-            f"{units[0]}: unit= can be a pair",
-            core.NacreWarning,
-            stacklevel=5,
+            f"{units[0]}: unit= can be a pair"
         )
     sizes = []
     for name, unit_name in zip(
@@ -277,22 +275,18 @@ def _measured_points(path: Path, places: Array, drops: Array) -> tuple[Array, Ar
         )
     if count:
         gap = float(np.diff(places).max())
-        warnings.warn(
+        warn(
             f"{count} of {points} points of {str(path)!r} are missing and were bridged smoothly, "
-            f"the widest gap is {written(gap, 'm')}",
-            core.NacreWarning,
-            stacklevel=4,
+            f"the widest gap is {written(gap, 'm')}"
         )
     farthest = float(drops[np.argmax(np.abs(drops - np.median(drops)))])
     bulk = drops[drops != farthest]
     away = float(np.abs(farthest - bulk).min()) if bulk.size else 0.0
     if bulk.size >= LEAST_REST and away > FAR * np.ptp(bulk):
         far, span = written(farthest, "m"), written(float(np.ptp(bulk)), "m")
-        warnings.warn(
+        warn(
             f"{points - count - bulk.size} of {points} drops of {str(path)!r}, {far}, is far from "
-            f"the others, which span {span}: is it the mark of a missing point?",
-            core.NacreWarning,
-            stacklevel=4,
+            f"the others, which span {span}: is it the mark of a missing point?"
         )
     return places, drops
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy.typing as npt
 
 import nacre
 from nacre import bearing, fatigue, hertz, indent
+from nacre._tools.notices import heard
 from nacre._tools.typing import Side
 
 Numbers = dict[str, float]
@@ -23,8 +23,7 @@ def _case(compute: Callable[[], Numbers]) -> Callable[[], Numbers]:
     """Add a computation, without warnings that belong to the printed problem."""
 
     def quiet() -> Numbers:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", nacre.NacreWarning)
+        with heard():
             return compute()
 
     CASES[compute.__name__.removeprefix("_")] = quiet

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-import nacre
 from nacre.app import opened as opened_module
 from nacre.app.answer import answer, file_text
 from nacre.app.opened import LARGEST, Asks, opened_card
@@ -176,18 +175,3 @@ def test_a_case_of_several_is_not_guessed() -> None:
     one = templates.texts()["contact"].encode()
     assert "one case" in str(asked(sent(a_toml=one, b_toml=one)))
     assert "one case" in str(asked(sent(a_txt=MATRIX, b_txt=MATRIX)))
-
-
-def test_warnings_are_those_of_this_thread() -> None:
-    from threading import Thread
-
-    from nacre._tools.notices import heard, warn
-
-    with heard() as notes:
-        other = Thread(target=warn, args=["elsewhere"])
-        other.start()
-        other.join()
-        warn("here")
-    assert notes == ["here"]
-    with pytest.warns(nacre.NacreWarning, match="after"):
-        warn("after")
