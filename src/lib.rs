@@ -34,6 +34,7 @@
 //! | compliance | [`response`]: frequency response û(α)/p̂(α) of a body; [`influence`]: influence coefficients `C[i, j]`; [`convolution`]: displacement from pressure, by DC-FFT; [`traction`]: the same of tractions; [`ends`]: free ends of bodies |
 //! | contact | [`contact`]: pressure from shape, load and moments |
 //! | *on the core* | |
+//! | conductance | [`conductance`]: heat or current through a solved contact |
 //! | stress | [`mod@stress`]: stress and displacement below the surface |
 //! | fatigue | [`fatigue`]: shakedown and multiaxial fatigue of a history of stresses |
 //! | friction | [`friction`]: partial slip, histories and rolling |
@@ -59,6 +60,7 @@
 #[macro_use]
 mod builders;
 mod compliance;
+pub mod conductance;
 pub mod contact;
 pub mod error;
 pub mod fatigue;

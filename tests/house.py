@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 CHAIN = [
     *("builders", "error", "numerics", "model", "compliance", "contact"),
-    *("stress", "fatigue", "friction", "wear", "indent", "gradient", "python"),
+    *("conductance", "stress", "fatigue", "friction", "wear", "indent", "gradient", "python"),
 ]
 """Modules; each imports only from those before it."""
 

@@ -2,6 +2,7 @@
 
 from nacre._core import Shape
 from nacre.cards import Card, Number
+from nacre.contact.conductance import Conductance
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.gradient import Direction, Gradient
 from nacre.contact.solution import Report
@@ -13,6 +14,7 @@ from nacre.results.verdict import Verdict
 
 __all__ = [
     "Card",
+    "Conductance",
     "CreepCoefficients",
     "Direction",
     "FatigueSummary",

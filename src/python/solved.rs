@@ -13,6 +13,7 @@ use super::bodies::PyBody;
 use super::data::{Plain, read};
 use super::grid::PyGrid;
 use crate::compliance::response::Body;
+use crate::conductance::Conductor;
 use crate::contact::{
     Balance, Compliance, Discretisation, Hardness, Motion, Report, Solution, Solver, Termination,
     Warning,
@@ -305,5 +306,26 @@ impl PySolved {
             solution.stiffness(Some(&mut || caller.go_on()))
         })??;
         Ok(PyArray2::from_owned_array(py, stiffness.to_vec().into()))
+    }
+
+    /// Resistance, its error, and the share of each cell of the flux; conductivities of body and counterbody from the surface down.
+    fn conductance<'py>(
+        &self,
+        py: Python<'py>,
+        conductivities: [Vec<f64>; 2],
+        film: &Bound<'py, PyAny>,
+    ) -> PyResult<(f64, f64, Bound<'py, PyArray2<f64>>)> {
+        let report = &self.0.report;
+        let [body, counterbody] = &conductivities;
+        let conductors = [
+            Conductor::of(Some(&report.body), body)?,
+            Conductor::of(report.counterbody.as_ref(), counterbody)?,
+        ];
+        let (solution, film) = (Arc::clone(&self.0), compliance(film)?);
+        let through = background::run(py, None, move |caller: &mut Caller<()>| {
+            solution.conductance(conductors, Some(film), Some(&mut || caller.go_on()))
+        })??;
+        let flux = PyArray2::from_owned_array(py, through.flux);
+        Ok((through.resistance, through.uncertainty, flux))
     }
 }

@@ -228,8 +228,10 @@ class System:
             )
         self.name = "SI" if units == ["N", "m", "Pa"] else name
         self.imperial = any(unit in IMPERIAL for unit in units)
-        self._names = dict(zip(("N", "m", "Pa"), units, strict=True))
-        self._sizes = {"N": force, "m": length, "Pa": stress}
+        watts = {1.0: "W", 1e-3: "mW", 1e-6: "µW", 1e-9: "nW"}
+        power = watts.get(float(f"{force * length:.12g}"), f"{units[0]} {units[1]}/s")
+        self._names = dict(zip(("N", "m", "Pa"), units, strict=True)) | {"W": power}
+        self._sizes = {"N": force, "m": length, "Pa": stress, "W": force * length}
 
     def unit(self, dimension: str) -> tuple[float, str]:
         """Return the size in SI and the name of the unit of numbers whose SI unit is `dimension`.
@@ -435,9 +437,9 @@ class Scale:
             not dimension
             or largest == 0
             or not math.isfinite(largest)
-            or dimension.startswith(("1", "kg", "m²/N"))
+            or dimension.startswith(("1", "kg", "m²/N", "K", "m K", "m² K"))
         ):
-            return cls(1.0, own)  # nobody writes k1/m, kkg or nm²/N
+            return cls(1.0, own)  # nobody writes k1/m, kkg, nm²/N or mK/W
         if (unit_chosen := (_chosen.get() or {}).get(dimension)) is not None:
             known = size_of(unit_chosen)
             assert known is not None

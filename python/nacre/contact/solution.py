@@ -40,8 +40,11 @@ from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
     import xarray
     from matplotlib.axes import Axes
+
+    from nacre.contact.conductance import Conductance, Conductivities, Kind
 
 Parts = tuple[dict[str, Any], core.Grid, Planned, Planned | None]
 """Fields of a report, its grid and its bodies."""
@@ -341,6 +344,66 @@ class Solution(NormalContact, Shown, Result):
         1.0
         """
         return self._solved.stiffness()
+
+    def conductance(
+        self,
+        *,
+        conductivity: Conductivities,
+        counter_conductivity: Conductivities | None = None,
+        film: npt.ArrayLike = 0.0,
+        kind: Kind = "thermal",
+    ) -> Conductance:
+        """Resistance of the contact to heat or to current, between bodies of layers.
+
+        The cells in contact are at one temperature or voltage on each side, and all others are
+        insulated. It is that of the cells that are in contact, whatever pressed them: layers,
+        roughness, hardness, wear and springs count by the cells that they leave.
+
+        Parameters
+        ----------
+        conductivity : float, str, dict or sequence
+            Conductivity of the body [W/(m K), S/m]: one number for all of it, a number of each
+            layer from the surface down and of the substrate, or by number or name of the layer
+            with "substrate". A name of `nacre.materials` stands for its thermal conductivity,
+            and `math.inf` for a body at one temperature or voltage throughout.
+        counter_conductivity : float, str, dict or sequence
+            That of the counterbody; required, since a rigid one has none of its own.
+        film : float or array_like
+            Resistance per area of a film between the surfaces [m² K/W, Ω m²], of all cells or of
+            each ``(nx, ny)``.
+        kind : {"thermal", "electrical"}
+            What is conducted, which decides on the units.
+
+        Returns
+        -------
+        nacre.types.Conductance
+            Resistance, its error, and the flux of each cell.
+
+        Raises
+        ------
+        ValueError
+            If a conductivity is missing, is not above 0 or looks like a resistivity, nothing is in
+            contact, the bodies have free ends, or the grid repeats along one axis only.
+
+        Notes
+        -----
+        In units of N, mm and MPa, a thermal conductivity is the same number, in mW/(mm K), and the
+        resistance is in K/mW; an electrical one is in S/mm, and the resistance in Ω.
+
+        Examples
+        --------
+        A ball on a flat, both of steel: 1/(2 k a) between equal bodies.
+
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
+        >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
+        >>> radius = (0.75 * 10.0 * 5e-3 / (steel.plane_strain_modulus / 2)) ** (1 / 3)
+        >>> round(through.resistance * 2 * 46.0 * radius, 2)
+        1.0
+        """
+        from nacre.contact.conductance import conductance_of
+
+        return conductance_of(self, conductivity, counter_conductivity, film, kind)
 
     @overload
     def gradient(

@@ -20,7 +20,6 @@ import nacre._core as core
 from nacre._tools.disk import check_folder
 from nacre._tools.groups import Group, keyword
 from nacre._tools.notices import warn
-from nacre._tools.paths import by_layer
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import AnyPath, Body, Matrix
 from nacre._tools.units import symbol, system
@@ -36,6 +35,8 @@ from nacre.contact.arguments import (
     Rolling,
     Setup,
     SolveOptions,
+    layer_names,
+    layer_numbers,
 )
 from nacre.contact.solution import Solution
 from nacre.results import files, values
@@ -56,7 +57,6 @@ from nacre.contact.wear_solution import (
     WearReport,
     WearState,
     WearThrough,
-    layer_names,
 )
 
 DISTANCES = ("sliding", "cycles", "passes")
@@ -334,25 +334,6 @@ class WearOptions:
     grows: bool
 
 
-def rates(name: str, rate: Any, body: Body | None) -> list[float]:
-    """Return the rates of the layers of a body and of its substrate, or one for all."""
-    if isinstance(rate, int | float | np.number) and not isinstance(rate, bool):
-        return [core.real(name, rate)]
-    if not isinstance(body, core.HalfSpace):
-        raise ValueError(f"{name} must be a number for a body without layers, got {rate!r}")
-    values: Any = core.layer_values(body, name, by_layer(rate))
-    count = len(body.layers) + 1
-    values = [*values, *[None] * (count - len(values))]
-    names = [*layer_names(body), "substrate"]
-    elastic = not isinstance(body.substrate, core.Rigid | core.Free)
-    missing = [layer for layer, value in zip(names, values, strict=True) if value is None]
-    if not elastic and missing == ["substrate"]:
-        values[-1], missing = 0.0, []
-    if missing:
-        raise ValueError(f"{name} must hold a rate for {', '.join(missing)}, got {rate!r}")
-    return [float(value) for value in values]
-
-
 def wear_history(
     shape: core.Shape,
     motion: Motion,
@@ -450,8 +431,10 @@ class WearMarch:
             ends = [base + end - offset for end in ends if base + end - offset > ROUNDING * offset]
         distance = base + sliding.distance - offset
         return WearOptions(
-            rate=rates("rate", bodies.rates.rate, bodies.body),
-            counter_rate=rates("counter_rate", bodies.rates.counter_rate, bodies.counterbody),
+            rate=layer_numbers("rate", bodies.rates.rate, bodies.body, "rate"),
+            counter_rate=layer_numbers(
+                "counter_rate", bodies.rates.counter_rate, bodies.counterbody, "rate"
+            ),
             distance=distance if distance > ROUNDING * offset else 0.0,
             slip=sliding.slip,
             cycle=sliding.cycle,

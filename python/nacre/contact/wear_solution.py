@@ -764,9 +764,3 @@ def _alike(numbers: Field, unit: str) -> list[str]:
     """Return numbers in the unit of the largest one."""
     scale = Scale.of(float(np.abs(numbers).max()), unit)
     return [f"{rounded(scale.factor * number, 4)} {scale.unit}" for number in numbers]
-
-
-def layer_names(body: object) -> list[str]:
-    """Return numbers and names of the layers of a body."""
-    layers = body.layers if isinstance(body, core.HalfSpace) else ()
-    return [display.layer_name(number, layer.name) for number, layer in enumerate(layers)]

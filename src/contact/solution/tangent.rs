@@ -8,10 +8,11 @@ use ndarray::Array2;
 use crate::compliance::convolution::{Convolution, Workspace};
 use crate::compliance::influence::memory;
 use crate::compliance::response::Body;
-use crate::contact::Solution;
 use crate::contact::options::Setup;
 use crate::contact::plan::PlannedOperator;
 use crate::contact::problem::patch::{block, copied};
+use crate::contact::solution::Report;
+use crate::contact::{Compliance, Solution};
 use crate::error::Result;
 use crate::model::grid::{Grid, Window, full_window, repeating};
 use crate::numerics::linear_cg::{self, Watch};
@@ -279,6 +280,43 @@ impl Solution {
             stiffness.iter_mut().for_each(|row| row[axis + 1] = 0.0);
         }
         Ok(stiffness)
+    }
+}
+
+impl Solution {
+    /// Sum over the cells in contact of the field q \[1/Pa\] with K q = 1 there, times the area of a cell, and the field: K of
+    /// these bodies, with a diagonal of `springs`. For conductors it is their conductance.
+    ///
+    /// # Errors
+    /// As [`Solution::stiffness`].
+    pub(crate) fn unit_flux(
+        &self,
+        [body, counterbody]: [Option<Body>; 2],
+        springs: Option<Compliance>,
+        watch: Option<&mut Watch>,
+    ) -> Result<(f64, Array2<f64>)> {
+        let go_on = &mut || ControlFlow::Continue(());
+        let watch: &mut Watch = watch.unwrap_or(go_on);
+        let mut field = Array2::zeros(self.grid().shape());
+        let (Some(window), Some(body)) = (self.cells_in_contact(), body) else {
+            return Ok((0.0, field));
+        };
+        let report = Report { body, counterbody, ..self.report.clone() };
+        let (operator, coefficients) = (None, None);
+        let on = Self { report, operator, coefficients, compliance: springs, ..self.clone() };
+        let tangent = Tangent::plan(&on, window.clone())?;
+        let ones = tangent.column(0);
+        let flux = tangent.solve_beside(&ones, &[], TOLERANCE, watch)?;
+        let mut residual = vec![0.0; ones.len()];
+        tangent.apply(&flux, &mut residual);
+        residual.iter_mut().zip(&ones).for_each(|(r, b)| *r = b - *r);
+        // In error by the square of the residual alone.
+        let mut sum = [[dot(&ones, &flux) + dot(&flux, &residual), 0.0, 0.0], [0.0; 3], [0.0; 3]];
+        tangent.lower_datum(&mut sum);
+        let [x, y] = window;
+        let cells = x.flat_map(|i| y.clone().map(move |j| [i, j]));
+        cells.zip(flux).for_each(|(cell, q)| field[cell] = q);
+        Ok((sum[0][0] * self.grid().cell_area(), field))
     }
 }
 

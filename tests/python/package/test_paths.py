@@ -11,7 +11,7 @@ import nacre
 from bodies import BALL, STEEL, quiet
 from nacre import fatigue, indent
 from nacre.case import Case, CaseError
-from nacre.contact.wear_march import rates
+from nacre.contact.arguments import layer_numbers
 from support import assert_close
 
 DLC, CHROMIUM = nacre.Elastic(young=300e9, poisson=0.25), nacre.Elastic(young=250e9, poisson=0.2)
@@ -87,7 +87,7 @@ def test_dicts_by_layer_take_each_form(key: int | str) -> None:
 @pytest.mark.parametrize("first", ["layers[0]", "layers.DLC", "DLC"])
 def test_rates_of_wear_take_each_form(first: str) -> None:
     given = {first: 1e-16, "body.layers[1]": 2e-16, "substrate": 0.0}
-    assert rates("rate", given, BODY) == [1e-16, 2e-16, 0.0]
+    assert layer_numbers("rate", given, BODY, "rate") == [1e-16, 2e-16, 0.0]
 
 
 @pytest.mark.parametrize("path", ["body.layers[2].thickness", "body.layers.Au.thickness"])

@@ -1,0 +1,257 @@
+"""Heat and current through a solved contact: resistance, its error, and where the flux is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.paths import by_layer
+from nacre._tools.typing import Field
+from nacre._tools.units import system
+from nacre.cards import materials
+from nacre.contact.arguments import layer_numbers
+from nacre.results import display
+from nacre.results.charts import Axis, Chart, Curve
+from nacre.results.quantities import CELLS, Quantity, derived, frozen, quantity
+from nacre.results.rows import Row, remark
+from nacre.results.shown import TableResult
+from nacre.results.verdict import Demand, Verdict, asked, judged, reasons
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from nacre.contact.solution import Solution
+
+Kind = Literal["thermal", "electrical"]
+KINDS = ("thermal", "electrical")
+Conductivity = float | str
+"""A number, or the name of a card of `nacre.materials`."""
+Conductivities = Conductivity | Mapping[int | str, Conductivity] | Sequence[Conductivity]
+UNITS = {"thermal": ("K/W", "W/K", "W/m/K"), "electrical": ("Ω", "S", "S/m")}
+"""SI units of resistance, conductance and conductivity."""
+LEAST = {"thermal": 1e-3, "electrical": 1.0}
+"""Conductivity below which a number is taken for a resistivity: evacuated powders have 1e-3
+W/(m K), and carbon, the poorest conductor of contacts, 1e4 S/m."""
+UNASKED = "No resistance is required."
+
+
+@frozen()
+class Conductance(TableResult):
+    """Resistance of a contact to heat or current, from `Solution.conductance`.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
+    >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
+    >>> print(through)
+    resistance   104.7 K/W ± ...
+    conductance  9.552 mW/K
+    """
+
+    _TITLE = "conductance of a contact"
+
+    resistance: float = quantity("K/W", label="resistance")
+    """Resistance between the bodies far from the contact [K/W, Ω].
+
+    Per length of a line contact, counted from the datum of `Grid.line`, it is in m K/W or Ω m; of a
+    contact that repeats, times the area of a period, in m² K/W or Ω m².
+    """
+    uncertainty: float = quantity("K/W")
+    """Estimated error of the resistance by the size of the cells, in its unit."""
+    flux: Field = quantity(dims=CELLS)
+    """Share of the flux that passes each cell ``(nx, ny)``; their sum is 1."""
+    kind: Kind
+    """Whether heat or current is conducted: "thermal" or "electrical"."""
+    grid: core.Grid
+    """Grid of the contact."""
+    notes: tuple[str, ...]
+    """What limits the validity: warnings of the contact."""
+
+    @property
+    @derived("W/K", label="conductance")
+    def conductance(self) -> float:
+        """Inverse of the resistance [W/K, S]."""
+        return 1 / self.resistance
+
+    @property
+    def per_area(self) -> bool:
+        """Whether the contact repeats, so that resistance and conductance are those of an area."""
+        return any(self.grid.periodic)
+
+    def _si(self, row: Quantity) -> str:
+        if row.is_field:
+            return ""
+        length = "m" if self.grid.is_line else "m²" if self.per_area else ""
+        if row.name == "conductance":
+            return f"{UNITS[self.kind][1]}/{length}".rstrip("/")
+        unit = UNITS[self.kind][0]
+        return f"{length} {unit}".strip() if self.kind == "thermal" else f"{unit} {length}".strip()
+
+    def _rows(self) -> list[Row]:
+        rows = super()._rows()
+        error = display.plus_minus(self.uncertainty, self.resistance)
+        return [
+            row._replace(text=f"{row.text}{error}", error=self.uncertainty)
+            if row.key == "resistance"
+            else row
+            for row in rows
+        ]
+
+    def _remarks(self) -> list[Row]:
+        if not self.grid.is_line:
+            return []
+        return [remark("datum", "that of the line grid, as of the approach")]
+
+    def _charts(self) -> list[Chart]:
+        i, j = np.unravel_index(int(self.flux.argmax()), self.flux.shape)
+        is_line, cells = self.grid.is_line, np.count_nonzero(self.flux)
+        name, at = ("y", self.grid.y) if is_line else ("x", self.grid.x)
+        density = cells * (self.flux[i] if is_line else self.flux[:, j])
+        axes = (Axis(name, "m"), Axis("flux density over its mean"))
+        caption = f"Flux density along {name} through the largest value."
+        return [Chart(caption, [Curve(at, density)], axes)]
+
+    def _file_rows(self) -> list[tuple[object, ...]]:
+        names = ("resistance", "uncertainty", "conductance")
+        rows = [row for row in self._known if row.name in names]
+        heads = [f"{row.name} [{system().unit(self._si(row))[1]}]" for row in rows]
+        return [tuple(heads), tuple(row.of(self) for row in rows)]
+
+    @asked
+    def verdict(self, *, required_resistance: float | None = None) -> Verdict:
+        """Whether the resistance is at most that required.
+
+        Parameters
+        ----------
+        required_resistance : float, optional
+            Largest resistance, in the unit of `resistance`.
+
+        Returns
+        -------
+        nacre.types.Verdict
+            Level, and sentences with the number that decides and its error.
+
+        Raises
+        ------
+        ValueError
+            If it is not above 0 and finite.
+        """
+        unit = next(self._si(row) for row in self._QUANTITIES if row.name == "resistance")
+        limit = required_resistance
+        if limit is not None and not 0 < core.real("required_resistance", limit) < math.inf:
+            raise ValueError(f"required_resistance must be above 0 and finite, got {limit!r}")
+        value = display.number(self.resistance, unit, 3)
+        share = display.plus_minus(self.uncertainty, self.resistance)
+        needed = "" if limit is None else f", {display.number(limit, unit, 3)} at most required"
+        demand = Demand(
+            "resistance",
+            "",
+            self.resistance,
+            self.uncertainty,
+            limit=limit,
+            unit=unit,
+            sentence=f"Resistance {value}{share}{needed}.",
+            leads=True,
+        )
+        return judged(
+            [demand],
+            doubts=reasons(self.notes, "unknown") if limit else (),
+            cautions=reasons(self.notes, "fair") if limit else (),
+            unasked=None if limit else UNASKED,
+        )
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the flux density along x, or y in line contact, through its largest value.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw on; new ones by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from nacre.plot.drawer import draw
+
+        return draw(self._charts()[0], axes, (0.6, 0.45))
+
+
+def conductance_of(
+    solution: Solution,
+    conductivity: Conductivities,
+    counter_conductivity: Conductivities | None,
+    film: npt.ArrayLike,
+    kind: Kind,
+) -> Conductance:
+    """Return the conductance of a solved contact."""
+    if kind not in KINDS:
+        raise ValueError(f"kind must be one of {KINDS}, got {kind!r}")
+    report = solution.report
+    if counter_conductivity is None:
+        raise ValueError(
+            "counter_conductivity must be given: that of the counterbody, or inf for one that is "
+            "at one temperature or voltage throughout"
+        )
+    both = [
+        _of_body("conductivity", conductivity, report.body, kind),
+        _of_body("counter_conductivity", counter_conductivity, report.counterbody, kind),
+    ]
+    films = np.asarray(core.real("film", film) if np.ndim(film) == 0 else film, dtype=float)
+    if films.ndim and films.shape != solution.grid.shape:
+        raise ValueError(
+            f"film must be a number or of shape {solution.grid.shape}, got shape {films.shape}"
+        )
+    if not (np.isfinite(films).all() and (films >= 0).all()):
+        raise ValueError(
+            f"film must be finite and at least 0, got {films.min():g} to {films.max():g}"
+        )
+    resistance, uncertainty, flux = solution._solved.conductance(both, films)
+    notes = tuple(dict.fromkeys(report.warning_kinds))
+    return Conductance(resistance, uncertainty, flux, kind, solution.grid, notes)
+
+
+def _of_body(name: str, given: Conductivities, body: Any, kind: Kind) -> list[float]:
+    """Return the conductivities of the layers of a body and of its substrate, or one for all."""
+    numbers: Any
+    if isinstance(given, Mapping):
+        numbers = {key: _number(name, value, kind) for key, value in by_layer(given).items()}
+    elif isinstance(given, list | tuple | np.ndarray) and np.ndim(given) == 1:
+        numbers = [_number(name, value, kind) for value in given]
+    else:
+        numbers = _number(name, given, kind)
+    values = layer_numbers(name, numbers, body, "conductivity")
+    for value in values:
+        size, unit = system().unit(UNITS[kind][2])
+        if not value > 0:
+            raise ValueError(f"{name} must be above 0, got {value:g}")
+        if value * size < LEAST[kind]:
+            raise ValueError(
+                f"{name} must be a conductivity in {unit}, got {value:g}: is it a resistivity? "
+                "give its inverse"
+            )
+    return values
+
+
+def _number(name: str, given: object, kind: Kind) -> float:
+    """Return a conductivity, that of a card by its name."""
+    if not isinstance(given, str):
+        return core.real(name, given)
+    if kind == "electrical":
+        raise ValueError(
+            f"{name} must be a number: cards have thermal conductivities only, got {given!r}"
+        )
+    numbers = materials[given].numbers
+    if "conductivity" not in numbers:
+        known = [card for card in materials if "conductivity" in materials[card].numbers]
+        raise ValueError(
+            f"{name} must name a card with a conductivity ({', '.join(known)}), got {given!r}"
+        )
+    return numbers["conductivity"].value / system().unit("W/m/K")[0]

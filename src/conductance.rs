@@ -1,0 +1,257 @@
+//! Conductance: heat or current through the cells in contact of a solved contact, and the film on them.
+//!
+//! Steady conduction into a layered half-space has a scalar response like that of its elasticity: the potential T̂ of the surface
+//! (temperature \[K\] or voltage \[V\]) per flux density q̂ into the body of the same wavenumber α is Z, with
+//!
+//! ```text
+//! Z = 1/(k α)                                  a half-space of conductivity k
+//! Z ← Z + r                                    an interface of resistance r per area
+//! Z ← Z_j (Z + Z_j t)/(Z_j + Z t)              a layer: Z_j = 1/(k_j α), t = tanh α h_j
+//! ```
+//!
+//! from the substrate up. Between bodies that are each at one potential far away, the contact area C is at one potential,
+//!
+//! ```text
+//! (Z₁ + Z₂ + ρ) q = 1  on C,   q = 0 elsewhere,   R = 1/∬ q dA
+//! ```
+//!
+//! with the resistance ρ per area of the film between them. It is the tangent of a contact whose cells stay, with conduction in place
+//! of elasticity and the film in place of springs. For homogeneous bodies it is Barber's theorem, R = E*/(2k) dδ/dW with
+//! 1/k = 1/k₁ + 1/k₂: Barber, Proc. R. Soc. A 459 (2003) 53, doi:10.1098/rspa.2002.1038.
+//!
+//! # The error
+//!
+//! Cells that the edge of the contact cuts count as a whole or not at all, so that the contact is a part of a cell too large. With a
+//! disc whose radius is off by the side of a cell, R changes by that side times P/2A, with the perimeter P and the area A of the
+//! contact. Of 330 coated discs of 13 to 100 cells across, whose resistances are known to 1e-13, R is too large by up to 0.32 of it,
+//! with a median of 0.12; a third is stated. Most are coatings that conduct poorly: under a film R falls as 1/A, twice as fast.
+
+use std::f64::consts::PI;
+
+use ndarray::{Array2, ArrayView1, Axis};
+
+use crate::compliance::response::{Asymptotes, Body, Response};
+use crate::contact::{Compliance, Solution};
+use crate::error::{Error, Result, not_negative, positive, refuse_if};
+use crate::numerics::linear_cg::Watch;
+
+/// Error of the resistance over that of a disc whose radius is off by the side of a cell.
+const OF_EDGE: f64 = 1.0 / 3.0;
+
+/// Conduction into a body: conductivities of its layers and its substrate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Conductor {
+    /// Layers from the surface down.
+    layers: Vec<ConductingLayer>,
+    /// 1/k of the substrate; 0 of a perfect conductor.
+    base: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ConductingLayer {
+    thickness: f64,
+    /// 1/k.
+    resistivity: f64,
+    /// Resistance per area of the interface below.
+    interface: f64,
+}
+
+impl Conductor {
+    /// A body of this conductivity \[W/(m K)\] or \[S/m\]; infinite for a body at one potential throughout.
+    ///
+    /// # Errors
+    /// A conductivity that is not above 0.
+    pub fn homogeneous(conductivity: f64) -> Result<Self> {
+        Ok(Self { layers: Vec::new(), base: resistivity(conductivity)? })
+    }
+
+    /// The layers of `body` and its substrate, with conductivities from the surface down; one stands for all.
+    ///
+    /// # Errors
+    /// A conductivity that is not above 0, an infinite one of a layer, and another number of them than of layers with the substrate.
+    pub fn of(body: Option<&Body>, conductivities: &[f64]) -> Result<Self> {
+        let layers = body.and_then(|body| body.half_space()).map_or(&[][..], |body| body.layers());
+        let (count, all) = (layers.len() + 1, conductivities);
+        let all = if let [one] = all { vec![*one; count] } else { all.to_vec() };
+        if all.len() != count {
+            return Err(Error::Parameter {
+                name: "conductivity",
+                requirement: "as many as layers, and one for the substrate",
+                value: all.len() as f64,
+            });
+        }
+        let body = Self::homogeneous(all[layers.len()])?;
+        let of_layers = all.iter().zip(layers).rev();
+        of_layers
+            .into_iter()
+            .try_fold(body, |body, (k, layer)| body.below_layer(*k, layer.thickness(), 0.0))
+    }
+
+    /// This body under one more layer, with the resistance per area \[m² K/W\] or \[Ω m²\] of the interface between them.
+    ///
+    /// # Errors
+    /// A conductivity or thickness that is not above 0 and finite, a resistance that is negative or not finite.
+    pub fn below_layer(
+        mut self,
+        conductivity: f64,
+        thickness: f64,
+        interface: f64,
+    ) -> Result<Self> {
+        let layer = ConductingLayer {
+            thickness: positive("thickness", thickness)?,
+            resistivity: 1.0 / positive("conductivity", conductivity)?,
+            interface: not_negative("interface", interface)?,
+        };
+        self.layers.insert(0, layer);
+        Ok(self)
+    }
+
+    /// Whether the body is at one potential throughout.
+    fn is_perfect(&self) -> bool {
+        self.layers.is_empty() && self.base <= 0.0
+    }
+}
+
+fn resistivity(conductivity: f64) -> Result<f64> {
+    if conductivity == f64::INFINITY {
+        return Ok(0.0);
+    }
+    Ok(1.0 / positive("conductivity", conductivity)?)
+}
+
+impl Response for Conductor {
+    /// α Z.
+    fn normal(&self, wavenumber: f64) -> f64 {
+        self.layers.iter().rev().fold(self.base, |below, layer| {
+            let below = below + wavenumber * layer.interface;
+            let (own, t) = (layer.resistivity, (wavenumber * layer.thickness).tanh());
+            own * (below + own * t) / (own + below * t)
+        })
+    }
+
+    /// Long waves see the substrate and, to the next order, what layers add to it.
+    fn asymptotes(&self) -> Asymptotes {
+        let of_layer = |layer: &ConductingLayer| {
+            let instead = self.base * self.base / layer.resistivity;
+            layer.interface + layer.thickness * (layer.resistivity - instead)
+        };
+        Asymptotes {
+            long: self.base,
+            constant: self.layers.iter().map(of_layer).sum(),
+            short: self.layers.first().map_or(self.base, |layer| layer.resistivity),
+        }
+    }
+
+    /// A layer that conducts well spreads the flux over its thickness times the ratio of conductivities.
+    fn lengths(&self) -> Option<[f64; 2]> {
+        let top = self.layers.first()?.thickness;
+        let total: f64 = self.layers.iter().map(|layer| layer.thickness).sum();
+        let all = || self.layers.iter().map(|layer| layer.resistivity);
+        let least = all().fold(if self.base > 0.0 { self.base } else { f64::INFINITY }, f64::min);
+        let most = all().fold(self.base, f64::max);
+        let interfaces =
+            self.layers.iter().map(|layer| layer.interface / least).fold(0.0, f64::max);
+        Some([top, (total * most / least).max(interfaces)])
+    }
+}
+
+/// Conduction through a contact.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Conductance {
+    /// Resistance between the bodies far from the contact \[K/W\] or \[Ω\]; per length of a line contact, from the datum of
+    /// [`Grid::line`](crate::Grid::line), and times the area of a period of a contact that repeats.
+    pub resistance: f64,
+    /// Estimated error of the resistance.
+    pub uncertainty: f64,
+    /// Flux density over its sum over the cells, (nx, ny).
+    pub flux: Array2<f64>,
+}
+
+impl Solution {
+    /// Resistance of the contact to heat or current between its bodies, with a `film` of this resistance per area \[m² K/W\] or
+    /// \[Ω m²\] on the cells in contact. `watch` is asked before each iteration whether to continue.
+    ///
+    /// # Errors
+    /// No contact, a contact with free ends or one that repeats along one axis only, bodies and a film without any resistance, and
+    /// those of [`Solution::stiffness`].
+    ///
+    /// ```
+    /// use nacre::conductance::Conductor;
+    /// use nacre::{Contact, Elastic, FlatPunch, Grid, Motion, Options, Setup};
+    /// // A disc of radius a on a half-space: R = 1/(4 k a).
+    /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [2.5, 2.5])?, Setup::default())?;
+    /// let solution = contact.solve(&FlatPunch::new(1.0)?, &Motion::load(1.0), &Options::default())?;
+    /// let (body, punch) = (Conductor::homogeneous(2.0)?, Conductor::homogeneous(f64::INFINITY)?);
+    /// let conduction = solution.conductance([body, punch], None, None)?;
+    /// assert!((conduction.resistance * 4.0 * 2.0 - 1.0).abs() < 0.02);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn conductance(
+        &self,
+        bodies: [Conductor; 2],
+        film: Option<Compliance>,
+        watch: Option<&mut Watch>,
+    ) -> Result<Conductance> {
+        let grid = self.grid();
+        let [along_x, along_y] = grid.is_periodic();
+        refuse_if(
+            self.report.free_ends().is_some(),
+            "conductance of bodies with free ends is not known: solve without ends",
+        )?;
+        refuse_if(
+            along_x != along_y,
+            "conductance needs a grid that repeats along both axes or along none",
+        )?;
+        let [cells, sides] = self.cells_and_sides();
+        refuse_if(cells <= 0.0, "conductance needs a contact, and no cell is in contact")?;
+        let mut conductors = bodies.into_iter().filter(|body| !body.is_perfect());
+        let Some(body) = conductors.next() else {
+            return Err(Error::Inconsistent(
+                "conductance needs a body with a finite conductivity: both are perfect conductors",
+            ));
+        };
+        let pair = [Some(body), conductors.next()];
+        let films = film.as_ref().map(|film| film.on(grid)).transpose()?;
+        let wave = |alpha: f64| pair.iter().flatten().map(|body| body.normal(alpha)).sum::<f64>();
+        // dR/d ln b of a line of half-width b, in which R has a datum; elsewhere R itself.
+        let rate = grid.is_line().then(|| {
+            let (half_width, area) = (cells / sides * grid.spacing()[1], cells * grid.cell_area());
+            let film = films.map_or(0.0, |film| {
+                (film * self.in_contact().mapv(|c| f64::from(u8::from(c)))).sum() / cells
+            });
+            2.0 * (wave(2.0 / half_width) / PI + film / area)
+        });
+        let bodies = pair.map(|body| body.map(Body::from));
+        let (conductance, mut flux) = self.unit_flux(bodies, film, watch)?;
+        flux /= flux.sum();
+        let period = if along_x { grid.size().into_iter().product() } else { 1.0 };
+        let resistance = period / conductance;
+        let of_edge = if grid.is_line() { 1.0 } else { PI / 4.0 };
+        let uncertainty = OF_EDGE * of_edge * sides / (2.0 * cells) * rate.unwrap_or(resistance);
+        Ok(Conductance { resistance, uncertainty, flux })
+    }
+
+    /// Number of cells in contact, and of their sides beside cells that are not.
+    fn cells_and_sides(&self) -> [f64; 2] {
+        let touches = self.in_contact();
+        let cells = touches.iter().filter(|touches| **touches).count();
+        let sides = |axis: usize| -> usize {
+            let lanes = touches.lanes(Axis(axis)).into_iter();
+            let repeats = self.grid().is_periodic()[axis];
+            let of_lane = |lane: ArrayView1<bool>| {
+                let last = lane.len() - 1;
+                let inner = lane.iter().zip(lane.iter().skip(1)).filter(|(a, b)| a != b).count();
+                let outer = if repeats {
+                    usize::from(lane[0] != lane[last])
+                } else {
+                    usize::from(lane[0]) + usize::from(lane[last])
+                };
+                inner + outer
+            };
+            lanes.map(of_lane).sum()
+        };
+        let along = if self.grid().is_line() { 0 } else { sides(0) };
+        [cells as f64, (along + sides(1)) as f64]
+    }
+}
