@@ -16,7 +16,7 @@ mod start;
 pub use automatic::{choose_grid, solve, solve_with};
 pub use batch::Case;
 pub use cascade::discretisation::Discretisation;
-pub(crate) use cascade::discretisation::chance_error;
+pub(crate) use cascade::discretisation::{chance_error, outline_error};
 pub use driver::WatchedSolve;
 #[cfg(feature = "python")]
 pub(crate) use options::SMALLEST_GRID;

@@ -12,6 +12,7 @@ mod contact {
     mod algorithms;
     mod automatic;
     mod batch;
+    mod conductance;
     mod discretisation;
     mod ends;
     mod errors;

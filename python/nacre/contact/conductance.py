@@ -15,7 +15,7 @@ from nacre._tools.typing import Field
 from nacre._tools.units import system
 from nacre.cards import materials
 from nacre.contact.arguments import layer_numbers
-from nacre.results import display
+from nacre.results import display, values
 from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import CELLS, Quantity, derived, frozen, quantity
 from nacre.results.rows import Row, remark
@@ -66,12 +66,19 @@ class Conductance(TableResult):
     """Estimated error of the resistance by the size of the cells, in its unit."""
     flux: Field = quantity(dims=CELLS)
     """Share of the flux that passes each cell ``(nx, ny)``; their sum is 1."""
-    kind: Kind
+    conduction: Kind
     """Whether heat or current is conducted: "thermal" or "electrical"."""
     grid: core.Grid
     """Grid of the contact."""
     notes: tuple[str, ...]
     """What limits the validity: warnings of the contact."""
+
+    @classmethod
+    def _checked(cls, state: dict[str, object]) -> dict[str, Any]:
+        grid, flux = values.decode(state.pop("grid")), np.asarray(state.pop("flux"), dtype=float)
+        if not isinstance(grid, core.Grid) or flux.shape != grid.shape:
+            raise ValueError(f"flux must have the shape of the grid, got {flux.shape} on {grid!r}")
+        return super()._checked(state) | {"grid": grid, "flux": flux}
 
     @property
     @derived("W/K", label="conductance")
@@ -89,9 +96,9 @@ class Conductance(TableResult):
             return ""
         length = "m" if self.grid.is_line else "m²" if self.per_area else ""
         if row.name == "conductance":
-            return f"{UNITS[self.kind][1]}/{length}".rstrip("/")
-        unit = UNITS[self.kind][0]
-        return f"{length} {unit}".strip() if self.kind == "thermal" else f"{unit} {length}".strip()
+            return f"{UNITS[self.conduction][1]}/{length}".rstrip("/")
+        unit = UNITS[self.conduction][0]
+        return f"{length} {unit}".strip() if self.conduction == "thermal" else f"{unit} {length}".strip()
 
     def _rows(self) -> list[Row]:
         rows = super()._rows()
@@ -227,8 +234,8 @@ def _of_body(name: str, given: Conductivities, body: Any, kind: Kind) -> list[fl
         numbers = [_number(name, value, kind) for value in given]
     else:
         numbers = _number(name, given, kind)
-    values = layer_numbers(name, numbers, body, "conductivity")
-    for value in values:
+    each = layer_numbers(name, numbers, body, "conductivity")
+    for value in each:
         size, unit = system().unit(UNITS[kind][2])
         if not value > 0:
             raise ValueError(f"{name} must be above 0, got {value:g}")
@@ -237,7 +244,7 @@ def _of_body(name: str, given: Conductivities, body: Any, kind: Kind) -> list[fl
                 f"{name} must be a conductivity in {unit}, got {value:g}: is it a resistivity? "
                 "give its inverse"
             )
-    return values
+    return each
 
 
 def _number(name: str, given: object, kind: Kind) -> float:

@@ -531,7 +531,7 @@ fn peak_cell(pressure: &Array2<f64>) -> Option<(f64, [usize; 2])> {
 }
 
 /// Error of the area of the cells in contact, in cells.
-fn outline_error(pressure: &Array2<f64>, grid: &Grid) -> f64 {
+pub(crate) fn outline_error(pressure: &Array2<f64>, grid: &Grid) -> f64 {
     let mut counts = [0.0; 2];
     let mut largest = 0.0_f64;
     for axis in if grid.is_line() { 1..2 } else { 0..2 } {
