@@ -16,6 +16,7 @@ from nacre._tools.units import system
 from nacre.cards import materials
 from nacre.contact.arguments import layer_numbers
 from nacre.results import display, values
+from nacre.results.base import same
 from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import CELLS, Quantity, derived, frozen, quantity
 from nacre.results.rows import Row, remark
@@ -40,7 +41,7 @@ W/(m K), and carbon, the poorest conductor of contacts, 1e4 S/m."""
 UNASKED = "No resistance is required."
 
 
-@frozen()
+@frozen(eq=False)
 class Conductance(TableResult):
     """Resistance of a contact to heat or current, from `Solution.conductance`.
 
@@ -73,6 +74,14 @@ class Conductance(TableResult):
     notes: tuple[str, ...]
     """What limits the validity: warnings of the contact."""
 
+    __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all fields are equal, to the bit."""
+        if not isinstance(other, Conductance):
+            return NotImplemented
+        return same(self._state(), other._state())
+
     @classmethod
     def _checked(cls, state: dict[str, object]) -> dict[str, Any]:
         grid, flux = values.decode(state.pop("grid")), np.asarray(state.pop("flux"), dtype=float)
@@ -98,7 +107,11 @@ class Conductance(TableResult):
         if row.name == "conductance":
             return f"{UNITS[self.conduction][1]}/{length}".rstrip("/")
         unit = UNITS[self.conduction][0]
-        return f"{length} {unit}".strip() if self.conduction == "thermal" else f"{unit} {length}".strip()
+        return (
+            f"{length} {unit}".strip()
+            if self.conduction == "thermal"
+            else f"{unit} {length}".strip()
+        )
 
     def _rows(self) -> list[Row]:
         rows = super()._rows()
