@@ -14,7 +14,7 @@ from nacre._tools.paths import by_layer
 from nacre._tools.typing import Field
 from nacre._tools.units import system
 from nacre.cards import materials
-from nacre.contact.arguments import layer_numbers
+from nacre.contact.layers import layer_numbers
 from nacre.results import display, values
 from nacre.results.base import same
 from nacre.results.charts import Axis, Chart, Curve

@@ -35,8 +35,6 @@ from nacre.contact.arguments import (
     Rolling,
     Setup,
     SolveOptions,
-    layer_names,
-    layer_numbers,
 )
 from nacre.contact.solution import Solution
 from nacre.results import files, values

@@ -11,7 +11,7 @@ import nacre
 from bodies import BALL, STEEL, quiet
 from nacre import fatigue, indent
 from nacre.case import Case, CaseError
-from nacre.contact.arguments import layer_numbers
+from nacre.contact.layers import layer_numbers
 from support import assert_close
 
 DLC, CHROMIUM = nacre.Elastic(young=300e9, poisson=0.25), nacre.Elastic(young=250e9, poisson=0.2)
