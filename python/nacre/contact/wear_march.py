@@ -36,6 +36,7 @@ from nacre.contact.arguments import (
     Setup,
     SolveOptions,
 )
+from nacre.contact.layers import layer_names, layer_numbers
 from nacre.contact.solution import Solution
 from nacre.results import files, values
 from nacre.results.journal import Journal
