@@ -8,7 +8,7 @@ import html
 import math
 import pickle
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
@@ -36,7 +36,7 @@ from nacre.results.charts import NO_EDGE, Axis, Chart, Curve, Look, Picture, sec
 from nacre.results.report import Rows, in_words
 from nacre.results.rows import Row
 from nacre.results.svg import drawing
-from nacre.results.verdict import Verdict, verdict_on
+from nacre.results.verdict import Verdict, verdict_on, worst_of
 from nacre.results.verdict import measured as with_error
 
 Answer = dict[str, Any]
@@ -111,8 +111,6 @@ EXPONENT = re.compile(r"\d[\d.]*e\+\d+")
 """A large number."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
 """Extremes of stresses that the page shows."""
-LEVELS = ("bad", "unknown", "fair", "good")
-"""Levels of verdicts, the worst first."""
 DIGITS = 5
 """Digits of the main number."""
 PRESSURE, DEPTH = Axis("pressure", "Pa"), Axis("depth", "m")
@@ -467,16 +465,6 @@ def _share_of_peak(contact: Contact) -> str:
     """Return the error of the largest pressure of a contact, a share; "" of an unknown one."""
     texts = (row.text for row in contact._rows() if row.key == "peak_pressure")
     return next(texts, "").partition(" ± ")[2]
-
-
-def worst_of(verdicts: Iterable[Verdict | None]) -> Verdict | None:
-    """Return the worst verdict, with the sentences of the others below; None of none."""
-    ranked = sorted(filter(None, verdicts), key=lambda verdict: LEVELS.index(verdict.level))
-    if not ranked:
-        return None
-    first, *others = ranked
-    lines = (line for verdict in others for line in verdict.sentences)
-    return replace(first, lines=tuple(dict.fromkeys([*first.lines, *lines])))
 
 
 def _selected(result: Any, keys: set[str]) -> list[Row]:
