@@ -163,10 +163,10 @@ def sweep(
     -------
     xarray.Dataset
         Outputs with the parameters as coordinates. Where a case failed they are NaN, and ``error``
-        holds the reason; ``warnings`` holds the warnings of each solve. Where limits are given,
-        ``verdict`` is the level of each case, as `Verdict.level`, "" where it failed. Peak pressure,
-        approach and load, peak and edge pressure of bearings, what `FrictionReport.discretisation`
-        has, and stresses and ranges of stress have their errors due to the size of the cells next to them,
+        holds the reason; ``warnings`` holds the warnings of each solve. With limits, ``verdict`` is
+        the level of each case, as `Verdict.level`, "" where it failed. Peak pressure, approach and
+        load, peak and edge pressure of bearings, what `FrictionReport.discretisation` has, and
+        stresses and ranges of stress have their errors due to the size of the cells next to them,
         such as ``peak_pressure_discretisation``, NaN where there is no estimate. The executor does
         not change a bit.
 
