@@ -27,7 +27,7 @@ from nacre.case.results import DEPTH_OPTIONS, last_of, of_last, rated, report_of
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import StressPlan, depth_charts
-from nacre.indent import IndentSolution
+from nacre.indent import Fit, IndentSolution, fit
 from nacre.indent import solve as solve_indentation
 from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
 from nacre.indent.solution import UNITS
@@ -401,6 +401,8 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
 
 def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     """Return the answer on an indentation, with and without the substrate."""
+    if "curve" in arguments:
+        return _fit_answer(_fitted(arguments, wanted))
     variable = next(name for name in ("load", "approach", "radius") if name in arguments)
     values = np.atleast_1d(np.asarray(arguments[variable], dtype=float))
     if stage == "draft":
@@ -420,13 +422,36 @@ def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> A
     return _answer(peak, rows, pictures, solution.warnings, verdict, following)
 
 
+def _fitted(arguments: Answer, wanted: Wanted) -> Fit:
+    """Return the modulus of the film, or of a body without one, that fits an opened curve."""
+    free = f"body.{'layers[0].material' if arguments['body'].layers else 'substrate'}.young"
+    fitted = fit(
+        *(arguments["curve"], arguments["body"], arguments["tip"], [free]),
+        nuisance=["contact_point"],
+        progress=wanted,
+    )
+    return replace(fitted, tolerance=arguments.get("tolerance"))
+
+
+def _fit_answer(fitted: Fit) -> Answer:
+    """Return the answer on an opened curve: its modulus, and the curve with the model."""
+    (path,) = fitted.free
+    words = "modulus of the film" if "layers" in path else "modulus of the body"
+    pictures = [_figure(chart) for chart in fitted._charts()]
+    peak = (words, fitted.estimates[path], "Pa", "")
+    return _answer(peak, fitted._report_rows(), pictures, fitted.warnings, fitted.verdict(), None)
+
+
 SOLVERS = {"contact": _contact, "wear": _wear, "bearing": _bearing, "indent": _indentation}
 """Functions of the kinds of cases."""
 
 
 def _report(case: Case, arguments: Answer, wanted: Wanted, measured: Measured) -> str:
     """Return the report of a case, as a page of HTML."""
-    results = results_of(case, arguments, {"progress": wanted})
+    if "curve" in arguments:
+        results: Answer = {"indent": _fitted(arguments, wanted)}
+    else:
+        results = results_of(case, arguments, {"progress": wanted})
     wanted()
     text = file_text(case, measured)
     return report_of(case, results, text, Path(case.name).stem, measured.files)
