@@ -96,6 +96,8 @@ LABELS = {
     "second": "life of the second bearing",
 }
 """Labels that say more beside others than those of the result."""
+PER_LENGTH = {("worn_volume", True), ("contact_area", False)}
+"""Rows of line contacts, by their keys and whether their unit is an area."""
 SILENT = {"ended"}
 """Rows of a history that say nothing of its numbers."""
 PLACES = {
@@ -435,11 +437,10 @@ def _fitted(arguments: Answer, wanted: Wanted) -> Fit:
 
 def _fit_answer(fitted: Fit) -> Answer:
     """Return the answer on an opened curve: its modulus, and the curve with the model."""
-    (path,) = fitted.free
-    words = "modulus of the film" if "layers" in path else "modulus of the body"
+    verdict, (path,) = fitted.verdict(), fitted.free
     pictures = [_figure(chart) for chart in fitted._charts()]
-    peak = (words, fitted.estimates[path], "Pa", "")
-    return _answer(peak, fitted._report_rows(), pictures, fitted.warnings, fitted.verdict(), None)
+    peak = (str(verdict.decided_by or "modulus"), fitted.estimates[path], "Pa", "")
+    return _answer(peak, fitted._report_rows(), pictures, fitted.warnings, verdict, None)
 
 
 SOLVERS = {"contact": _contact, "wear": _wear, "bearing": _bearing, "indent": _indentation}
@@ -522,7 +523,10 @@ def _worded(row: Row, is_ring: bool) -> Row | None:
         parts = zip(display.without_rounding(value), words, strict=True)
         text = ", ".join(f"{_component(row, part)} {place}" for part, place in parts if part)
     text = EXPONENT.sub(lambda large: plain(float(large[0]), 4), in_words(text))
-    return row._replace(label=LABELS.get(row.key, row.label), text=text) if text else None
+    label = LABELS.get(row.key, row.label)
+    if (row.key, "²" in text) in PER_LENGTH:
+        label += " per length"
+    return row._replace(label=label, text=text) if text else None
 
 
 def _component(row: Row, value: float) -> str:

@@ -42,6 +42,8 @@ ASKED = re.compile(
     r"\b(kind|channel|unit|spacing|units|columns|depth|force|segment) must be (?!left out)"
 )
 """What a reader asks for."""
+KEYWORDS = re.compile(r", such as units=\{.*?\}|[;.] [gG]ive depth=.*")
+"""What readers say of their keywords, which the page has not."""
 INPUTS = {"depth": "columns", "force": "columns", "segment": "channel"}
 """Inputs of the page for what readers of curves ask for."""
 MOST_POINTS = 2000
@@ -60,7 +62,7 @@ class Asks(CaseError):
     """Files that cannot be read yet; `what` is the key that is asked for, or ""."""
 
     def __init__(self, message: str) -> None:
-        super().__init__(message)
+        super().__init__(KEYWORDS.sub("", message))
         found = ASKED.search(message)
         self.what = INPUTS.get(found[1], found[1]) if found else ""
 
@@ -174,6 +176,8 @@ def _curve_card(folder: Path, names: list[str], reading: Mapping[str, str]) -> C
     fields, more = (
         [field for field in each if field.path not in left] for each in (card.fields, card.more)
     )
+    if reading["kind"] == "curve":
+        fields = [field._replace(label=field.label.replace("film ", "")) for field in fields]
     measured = Measured({"curve": nacre.indent.Curve(depth, force, name=curve.name)}, {}, (), notes)
     changed = dataclasses.replace(card, name="own", group="own file", base=data, measured=measured)
     return dataclasses.replace(changed, fields=fields, more=more)
