@@ -103,25 +103,21 @@ def read(text: str) -> Line:
     line = Line("", {}, [])
     if len(text) > LONGEST:
         return line._replace(asked=[f"a line has at most {LONGEST} characters"])
-    is_first = True
-    for part in re.split(r"[;\n]|,(?!\d)|(?<!\d),", text):
-        part = re.sub(r"(?<=\d) (?=000\b)", "", " ".join(part.split()))  # 20 000
+    parts = (" ".join(part.split()) for part in re.split(r"[;\n]|,(?!\d)|(?<!\d),", text))
+    for number, spaced in enumerate(filter(None, parts)):
+        part = re.sub(r"(?<=\d) (?=000\b)", "", spaced)  # 20 000
         if THOUSANDS.search(part):
             line.asked.append(
                 f'"{part}": write numbers without blanks, and not with three decimals'
             )
-            is_first = False
             continue
-        pieces = list(_pieces(part, is_first))
-        is_first = is_first and not part
+        pieces = list(_pieces(part, not number))
         for at, (piece, known) in enumerate(pieces):
             beside = pieces[max(0, at - 1) : at + 2]
-            if known is None:
-                continue
-            if any(other is None for _, other in beside):
-                pieces[at] = piece, {}  # what is beside may be part of it
-                continue
-            for name, value in known.items():
+            if known and any(other is None for _, other in beside):
+                known = {}  # what is beside may be part of it
+                pieces[at] = piece, known
+            for name, value in (known or {}).items():
                 if name == "designation":
                     line = line._replace(designation=str(value))
                 elif name in line.values:
@@ -254,10 +250,8 @@ def _estimate(line: Line, card: Card) -> tuple[dict[str, str], str]:
     A `ValueError` says why they are not.
     """
     sizes = _dimensions(line.designation)
-    known: dict[str, float] = {
-        name: float(line.values.get(name, size)) for name, size in sizes.items()
-    }
-    known |= {name: float(line.values[name]) for name in NEEDED if name in line.values}
+    given = {name: line.values[name] for name in NEEDED if name in line.values}
+    known = {name: float(value) for name, value in (sizes | given).items()}
     if not known and not line.designation:
         return {}, ""
     if line.designation[:1].isalpha() or card.name != "ball-bearing":

@@ -169,35 +169,31 @@ def _curve_card(folder: Path, names: list[str], reading: Mapping[str, str]) -> C
     data = copy.deepcopy(card.base)
     data.pop("adhesion")
     data["indent"]["load"] = float(f"{force.max():.5g}")
-    if reading["kind"] == "curve":
+    is_bare = reading["kind"] == "curve"
+    if is_bare:
         left |= {path for path in card.by_path if path.startswith(("body", "materials.glass"))}
         data["body"] = {"substrate": "film"}
         data["materials"].pop("glass")
-    fields, more = (
-        [field for field in each if field.path not in left] for each in (card.fields, card.more)
-    )
-    if reading["kind"] == "curve":
-        fields = [field._replace(label=field.label.replace("film ", "")) for field in fields]
+    fields = [
+        field._replace(label=field.label.replace("film ", "" if is_bare else "film "))
+        for field in card.fields
+        if field.path not in left
+    ]
     measured = Measured({"curve": nacre.indent.Curve(depth, force, name=curve.name)}, {}, (), notes)
     changed = dataclasses.replace(card, name="own", group="own file", base=data, measured=measured)
-    return dataclasses.replace(changed, fields=fields, more=more)
+    return dataclasses.replace(changed, fields=fields, more=[])
 
 
 def _curve_options(reading: Mapping[str, str]) -> Data:
     """Return what was typed as keywords of the reader of curves."""
-    options: Data = {}
-    for key in ("columns", "units"):
-        if key in reading:
-            parts = [part.strip() for part in re.split("[,;]", reading[key])]
-            if len(parts) != 2:
-                raise CaseError(f"{key} must be two, of depth and force, got {reading[key]!r}")
-            pairs = dict(zip(("depth", "force"), parts, strict=True))
-            if key == "units":
-                options["units"] = pairs
-            else:
-                options |= {name: _number_or_name(text) for name, text in pairs.items()}
-    if "channel" in reading:
-        options["segment"] = _number_or_name(reading["channel"])
+    channel = reading.get("channel")
+    options: Data = {"segment": _number_or_name(channel)} if channel else {}
+    for key in reading.keys() & {"columns", "units"}:
+        parts = re.split(r"\s*[,;]\s*", reading[key])
+        if len(parts) != 2:
+            raise CaseError(f"{key} must be two, of depth and force, got {reading[key]!r}")
+        pair = dict(zip(("depth", "force"), map(_number_or_name, parts), strict=True))
+        options |= {"units": pair} if key == "units" else pair
     return options
 
 
