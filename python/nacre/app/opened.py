@@ -51,8 +51,8 @@ MOST_POINTS = 2000
 MICROMETRES = 1e6
 """Micrometres in a metre, micronewtons in a newton: cases of indentations are in these."""
 CURVE_NOTE = (
-    "The modulus holds for this curve up to its largest force and for the numbers in the fields: "
-    "check the tip radius, Poisson's ratio, and of a film its thickness and its substrate"
+    "The modulus holds for the numbers in the fields. Check the tip radius, Poisson's ratio, and "
+    "of a film its thickness and its substrate"
 )
 MILLIMETRES = 1e3
 """Millimetres in a metre: cases of files are in N and mm."""

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import nacre
+from nacre._tools.markup import text_of
 from nacre.app import opened as opened_module
 from nacre.app.answer import answer, file_text
 from nacre.app.opened import LARGEST, Asks, opened_card
@@ -215,6 +216,13 @@ def test_a_curve_asks_for_columns_and_units() -> None:
     # In the units of the case, up to the largest force.
     assert_close(curve.depth[-1], 0.2, atol=2e-3)
     assert_close(curve.depth[0], -0.02, atol=1e-5)
+
+
+def test_the_page_has_an_input_for_all_that_is_asked() -> None:
+    page = text_of("nacre.app", "static/page.html")
+    assert [kind for kind in opened_module.KINDS if f'<option value="{kind}">' not in page] == []
+    for key in ("kind", "channel", "unit", "units", "spacing", "columns"):
+        assert f'data-reading="{key}"' in page
 
 
 def test_a_long_curve_is_thinned_and_says_so() -> None:
