@@ -408,6 +408,17 @@ impl StressPlan {
         places.into_iter().filter_map(nearest).filter(|k| *k != from).collect()
     }
 
+    /// Largest turn of the edge from one of its `points` over the longer side of a cell, to both sides: the length of the change
+    /// of its normal, which is the angle where that is small, and at most 2.
+    pub(super) fn turn_of_edge(&self, points: &[CellPoint], from: usize) -> f64 {
+        let Some(solved) = &self.whole.solved else { return 0.0 };
+        let inward = |k: usize| solved.subcell.inward(&points[k]).unwrap_or_default();
+        let [nx, ny] = inward(from);
+        let [dx, dy] = self.whole.grid.spacing();
+        let beside = self.along_edge(points, from, dx.max(dy)).into_iter().map(inward);
+        beside.map(|[x, y]| (x - nx).hypot(y - ny)).fold(0.0, f64::max)
+    }
+
     /// A point at this distance from one of the edge, towards the inside; none beyond the grid.
     pub(super) fn inside_of(&self, point: &CellPoint, by: f64) -> Option<CellPoint> {
         let inward = self.whole.solved.as_ref()?.subcell.inward(point)?;

@@ -197,6 +197,9 @@ def filled(text: str, cards: Mapping[str, Card], current: str) -> Filled:
         asked.append(f"the page has cards of {kinds}, and none of a {name}: nothing is filled in")
         return Filled(current, {}, {}, "", asked)
     card = cards[("bearing" if is_roller else "ball-bearing") if name else current]
+    if "Fr" in line.values and "Fa" not in line.values:
+        line.values["Fa"] = 0.0
+        asked.append("no axial load in the line: Fa is 0")
     for symbol, value in line.values.items():
         if not (target := SYMBOLS[symbol].get("target")):
             continue

@@ -101,20 +101,12 @@ class WearThrough(Result):
 
     def __repr__(self) -> str:
         """Return layer, distance and place in a line."""
-        return f"<WearThrough: {self._words(None)}>"
+        return f"<WearThrough: {self._words(f'{self.distance:.4g}')}>"
 
-    def _words(self, unit: Unit | None) -> str:
-        """Return layer, distance in the unit of a history, and place."""
+    def _words(self, distance: str) -> str:
+        """Return layer, distance and place."""
         at = ", ".join(written(x, "m") for x in self.position)
-        distance = self._travelled(unit) if unit else f"{self.distance:.4g}"
         return f"{self.layer} of the {self.body} after {distance}, at ({at})"
-
-    def _travelled(self, unit: Unit) -> str:
-        """Return the distance and its error in the unit of a history."""
-        distance = travelled(self.distance, unit)
-        if self.uncertainty is None:
-            return distance
-        return f"{distance} ± {travelled(self.uncertainty, unit)}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -375,14 +367,10 @@ class WearHistory(Shown, Result):
             return None
         needed = "" if limit is None else f", {travelled(limit, self.unit)} required"
         if life is not None:
-            # Wear is proportional to the pressure, whose error by the thickness is the distance's.
-            error = life.uncertainty
-            if error is not None:
-                error += (self.report.thickness_error or 0.0) * life.distance
+            error = self._distance_error(life)
             when, soon = "from the start", ": too soon" if limit and life.distance < limit else ""
             if life.distance > 0:
-                share = with_error(life.distance, error)
-                when = f"after {travelled(life.distance, self.unit)}{share}"
+                when = f"after {self._travelled(life)}"
             else:
                 error = 0.0  # that is certain
             sentence = f"Worn through {when}{needed}{soon}."
@@ -401,6 +389,20 @@ class WearHistory(Shown, Result):
         )
         limit = None if limit is not None and reached < limit else limit
         return DISTANCE._replace(value=reached, limit=limit, unit=self.unit, sentence=sentence)
+
+    def _distance_error(self, event: WearThrough) -> float | None:
+        """Return the error of a distance by the steps and by the thickness of the layers.
+
+        Wear is proportional to the pressure, and so is its error by the thickness.
+        """
+        if event.uncertainty is None:
+            return None
+        return event.uncertainty + (self.report.thickness_error or 0.0) * event.distance
+
+    def _travelled(self, event: WearThrough) -> str:
+        """Return the distance to an event, and its error."""
+        share = with_error(event.distance, self._distance_error(event))
+        return f"{travelled(event.distance, self.unit)}{share}"
 
     def _place_of(self, event: WearThrough) -> str:
         """Return which layer is through, and where."""
@@ -680,7 +682,7 @@ class WearHistory(Shown, Result):
             ("largest depth", written(float(self.deepest[-1].max()), "m")),
             ("peak pressure", _fromto(self.peak_pressure, "Pa")),
             ("contact area", _fromto(self.contact_area, "m" if line else "m²")),
-            *[("worn through", event._words(self.unit)) for event in self.events],
+            *[("worn through", event._words(self._travelled(event))) for event in self.events],
             ("steps", f"{report.steps}{errors}"),
         ]
         if report.thickness_error is not None:

@@ -105,7 +105,7 @@ pub(super) struct Uncertainty {
     shape: [usize; 2],
     /// Sides of a cell.
     spacing: [f64; 2],
-    /// Distance to which the loads of cells at an edge are followed.
+    /// Depth to which the loads of cells at an edge are followed.
     followed: f64,
     /// Error of the stress down to the depth of half the width of the contact, due to that width.
     of_width: f64,
@@ -467,11 +467,17 @@ impl Uncertainty {
                     }
                 }
             }
-            let distance = place.depth.max(self.followed) / self.spacing[axis];
+            // Beside the loads that are followed, or below all of them.
+            let distance = match place.depth < self.followed {
+                true => DEPTH_LIMIT * self.spacing[0].max(self.spacing[1]),
+                false => place.depth,
+            } / self.spacing[axis];
             let left_out = LEFT_OUT / distance.powi(3) * (1.0 + friction);
             for factors in &mut errors.factors {
+                // Without any load that is followed, pressure is uniform over cells.
+                let uniform = factors[axis][Known::Mean as usize];
                 let edge = &mut factors[axis][Known::Edge as usize];
-                *edge = edge.max(left_out);
+                *edge = edge.max(left_out.min(uniform));
             }
         }
         errors

@@ -255,3 +255,42 @@ def test_the_energy_has_that_of_springs(line: bool, cells: bool) -> None:
     )
     slope = (high.elastic_energy - low.elastic_energy) / 2e-8
     assert slope == pytest.approx(middle.load, rel=1e-4)
+
+
+def test_ends_on_layers_are_within_their_errors() -> None:
+    """Lines on layers of a quarter to four cells, whose ends sixteen times finer cells locate.
+
+    A layer whose thickness is that of some cells changes the law of the pressure by which an end is
+    located: errors of a homogeneous body, a twentieth of a cell, do not hold there.
+    """
+    rng = np.random.default_rng(7)
+    errors: list[float] = []
+    shares: list[float] = []
+    radius = MODULUS * HALF / 2 / PEAK
+    load = np.pi / 2 * HALF * PEAK
+    width = 4.0 * HALF
+    for k in range(30):
+        cells = int(np.exp(rng.uniform(np.log(100), np.log(500))))
+        side = width / cells
+        young = STEEL.young * np.exp(rng.uniform(np.log(0.2), np.log(4)))
+        thickness = side * np.exp(rng.uniform(np.log(0.25), np.log(4)))
+        layer = nacre.Layer(nacre.Elastic(young, rng.uniform(0, 0.45)), thickness)
+        setup: dict[str, Any] = {"counterbody": STEEL} if k % 2 else {}
+        body = nacre.HalfSpace(STEEL, [layer])
+
+        def end(count: int, body: Any = body, setup: Any = setup) -> tuple[float, float]:
+            grid = nacre.Grid.line(count, width)
+            line = nacre.Cylinder(radius)
+            solution = nacre.solve(line, body, grid=grid, load=load, **setup)
+            stated = solution.report.discretisation
+            assert stated is not None
+            return solution.contact_extent[1][1], stated["contact_extent"][1]
+
+        located, stated = end(cells)
+        limit, rest = end(16 * cells)
+        errors.append((abs(located - limit) - rest) / stated)
+        shares.append(stated / side)
+    assert max(errors) < 1
+    # Most are known to a part of a cell, and nothing is known worse than by its size and a fifth.
+    assert np.median(shares) < 0.6
+    assert max(shares) < 1.2 + 1e-9

@@ -622,3 +622,29 @@ def test_the_tension_at_the_edge_of_a_ball_is_known_to_six_per_cent() -> None:
     value, error = body.tension[0], body.uncertainty["tension"]
     assert abs(value - expected) <= error < 0.06 * expected
     assert value == pytest.approx(expected, rel=5e-3)  # 0.2 % on some 70 cells across
+
+
+@pytest.mark.filterwarnings("ignore:the extremes")  # whose errors are large enough to say it
+@pytest.mark.parametrize("radius", [0.5, 2.0])
+def test_elongated_cells_have_errors_of_their_size(radius: float) -> None:
+    """Ellipses of 18 and 40 to 1 whose cells are up to 40 times as long as wide.
+
+    At their narrow ends the edge turns within one cell. Stated errors hold there, and are no more
+    than half the tension: without a bound they were up to a thousand times the tension.
+    """
+    coating = nacre.Layer(nacre.Elastic(300e9, 0.2), 2e-6)
+    body = nacre.HalfSpace(STEEL, [coating])
+    shape = nacre.Paraboloid(radius, 5e-3)
+    extent = nacre.solve(shape, body, load=50.0).contact_extent
+    size = (2.5 * extent[0][1], 2.5 * extent[1][1])
+
+    def tension(cells: tuple[int, int]) -> tuple[float, float]:
+        solution = nacre.solve(shape, body, load=50.0, grid=nacre.Grid(cells, size))
+        layer = solution.stress_summary().layers[0]
+        assert layer.uncertainty["tension"] is not None
+        return layer.tension[0], layer.uncertainty["tension"]
+
+    finest, _ = tension((640, 160))
+    for cells in ((80, 40), (80, 80), (160, 40), (160, 80), (160, 160)):
+        value, stated = tension(cells)
+        assert abs(value - finest) < stated < 0.5 * value, cells

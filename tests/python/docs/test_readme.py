@@ -40,7 +40,7 @@ ROWS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         (RUBBED, '{"force": (0, 100.0)}', RUBBED),
         ("values[0][-1].shift", "values[1].force"),
     ),
-    "wear it": ((PRESSED,), ("values[0].worn_volume", "values[0].events[0].position")),
+    "compute wear": ((PRESSED,), ("values[0].worn_volume", "values[0].events[0].position")),
     "save the": (
         ("1e-5, 1e-4",),
         ("nacre.load('roller.nc').pressure", "Path('roller.vtr').stat().st_size"),
@@ -64,9 +64,9 @@ ROWS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 
 Keys are the words with which a row begins."""
 COMMANDS = {
-    "judge a": ("nacre app",),
+    "assess a": ("nacre app",),
     "solve a case": ("nacre new", "nacre new bearing case.toml", "nacre solve case.toml"),
-    "compare what": ("nacre verify",),
+    "compare the": ("nacre verify",),
 }
 """Rows of commands."""
 
