@@ -197,9 +197,8 @@ def filled(text: str, cards: Mapping[str, Card], current: str) -> Filled:
         asked.append(f"the page has cards of {kinds}, and none of a {name}: nothing is filled in")
         return Filled(current, {}, {}, "", asked)
     card = cards[("bearing" if is_roller else "ball-bearing") if name else current]
-    if "Fr" in line.values and "Fa" not in line.values:
-        line.values["Fa"] = 0.0
-        asked.append("no axial load in the line: Fa is 0")
+    is_radial = "Fr" in line.values and "Fa" not in line.values
+    line.values.update({"Fa": 0.0} if is_radial else {})
     for symbol, value in line.values.items():
         if not (target := SYMBOLS[symbol].get("target")):
             continue
@@ -212,6 +211,8 @@ def filled(text: str, cards: Mapping[str, Card], current: str) -> Filled:
             values[field.path] = typed
         except FieldError as error:
             asked.append(str(error))
+    if is_radial:
+        asked.append("no axial load in the line: it is 0")
     targets = {SYMBOLS[symbol].get("target") for symbol in SYMBOLS.keys() - line.values.keys()}
     kept = [field.label for field in card.fields if field.path in targets - {"bearing.count"}]
     if line.values and kept:
