@@ -8,7 +8,7 @@ import html
 import math
 import pickle
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
@@ -27,7 +27,7 @@ from nacre.case.results import DEPTH_OPTIONS, last_of, of_last, rated, report_of
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import StressPlan, depth_charts
-from nacre.indent import IndentSolution
+from nacre.indent import Fit, IndentSolution, fit
 from nacre.indent import solve as solve_indentation
 from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
 from nacre.indent.solution import UNITS
@@ -36,7 +36,7 @@ from nacre.results.charts import NO_EDGE, Axis, Chart, Curve, Look, Picture, sec
 from nacre.results.report import Rows, in_words
 from nacre.results.rows import Row
 from nacre.results.svg import drawing
-from nacre.results.verdict import Verdict, verdict_on
+from nacre.results.verdict import Verdict, verdict_on, worst_of
 from nacre.results.verdict import measured as with_error
 
 Answer = dict[str, Any]
@@ -96,6 +96,8 @@ LABELS = {
     "second": "life of the second bearing",
 }
 """Labels that say more beside others than those of the result."""
+PER_LENGTH = {("worn_volume", True), ("contact_area", False)}
+"""Rows of line contacts, by their keys and whether their unit is an area."""
 SILENT = {"ended"}
 """Rows of a history that say nothing of its numbers."""
 PLACES = {
@@ -111,8 +113,6 @@ EXPONENT = re.compile(r"\d[\d.]*e\+\d+")
 """A large number."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
 """Extremes of stresses that the page shows."""
-LEVELS = ("bad", "unknown", "fair", "good")
-"""Levels of verdicts, the worst first."""
 DIGITS = 5
 """Digits of the main number."""
 PRESSURE, DEPTH = Axis("pressure", "Pa"), Axis("depth", "m")
@@ -403,6 +403,8 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
 
 def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     """Return the answer on an indentation, with and without the substrate."""
+    if "curve" in arguments:
+        return _fit_answer(_fitted(arguments, wanted))
     variable = next(name for name in ("load", "approach", "radius") if name in arguments)
     values = np.atleast_1d(np.asarray(arguments[variable], dtype=float))
     if stage == "draft":
@@ -422,13 +424,35 @@ def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> A
     return _answer(peak, rows, pictures, solution.warnings, verdict, following)
 
 
+def _fitted(arguments: Answer, wanted: Wanted) -> Fit:
+    """Return the modulus of the film, or of a body without one, that fits an opened curve."""
+    free = f"body.{'layers[0].material' if arguments['body'].layers else 'substrate'}.young"
+    fitted = fit(
+        *(arguments["curve"], arguments["body"], arguments["tip"], [free]),
+        nuisance=["contact_point"],
+        progress=wanted,
+    )
+    return replace(fitted, tolerance=arguments.get("tolerance"))
+
+
+def _fit_answer(fitted: Fit) -> Answer:
+    """Return the answer on an opened curve: its modulus, and the curve with the model."""
+    verdict, (path,) = fitted.verdict(), fitted.free
+    pictures = [_figure(chart) for chart in fitted._charts()]
+    peak = (str(verdict.decided_by or "modulus"), fitted.estimates[path], "Pa", "")
+    return _answer(peak, fitted._report_rows(), pictures, fitted.warnings, verdict, None)
+
+
 SOLVERS = {"contact": _contact, "wear": _wear, "bearing": _bearing, "indent": _indentation}
 """Functions of the kinds of cases."""
 
 
 def _report(case: Case, arguments: Answer, wanted: Wanted, measured: Measured) -> str:
     """Return the report of a case, as a page of HTML."""
-    results = results_of(case, arguments, {"progress": wanted})
+    if "curve" in arguments:
+        results: Answer = {"indent": _fitted(arguments, wanted)}
+    else:
+        results = results_of(case, arguments, {"progress": wanted})
     wanted()
     text = file_text(case, measured)
     return report_of(case, results, text, Path(case.name).stem, measured.files)
@@ -469,16 +493,6 @@ def _share_of_peak(contact: Contact) -> str:
     return next(texts, "").partition(" ± ")[2]
 
 
-def worst_of(verdicts: Iterable[Verdict | None]) -> Verdict | None:
-    """Return the worst verdict, with the sentences of the others below; None of none."""
-    ranked = sorted(filter(None, verdicts), key=lambda verdict: LEVELS.index(verdict.level))
-    if not ranked:
-        return None
-    first, *others = ranked
-    lines = (line for verdict in others for line in verdict.sentences)
-    return replace(first, lines=tuple(dict.fromkeys([*first.lines, *lines])))
-
-
 def _selected(result: Any, keys: set[str]) -> list[Row]:
     """Return some of the rows of a result, none of None."""
     return [] if result is None else [row for row in result._rows() if row.key in keys]
@@ -509,7 +523,10 @@ def _worded(row: Row, is_ring: bool) -> Row | None:
         parts = zip(display.without_rounding(value), words, strict=True)
         text = ", ".join(f"{_component(row, part)} {place}" for part, place in parts if part)
     text = EXPONENT.sub(lambda large: plain(float(large[0]), 4), in_words(text))
-    return row._replace(label=LABELS.get(row.key, row.label), text=text) if text else None
+    label = LABELS.get(row.key, row.label)
+    if (row.key, "²" in text) in PER_LENGTH:
+        label += " per length"
+    return row._replace(label=label, text=text) if text else None
 
 
 def _component(row: Row, value: float) -> str:

@@ -103,25 +103,21 @@ def read(text: str) -> Line:
     line = Line("", {}, [])
     if len(text) > LONGEST:
         return line._replace(asked=[f"a line has at most {LONGEST} characters"])
-    is_first = True
-    for part in re.split(r"[;\n]|,(?!\d)|(?<!\d),", text):
-        part = re.sub(r"(?<=\d) (?=000\b)", "", " ".join(part.split()))  # 20 000
+    parts = (" ".join(part.split()) for part in re.split(r"[;\n]|,(?!\d)|(?<!\d),", text))
+    for number, spaced in enumerate(filter(None, parts)):
+        part = re.sub(r"(?<=\d) (?=000\b)", "", spaced)  # 20 000
         if THOUSANDS.search(part):
             line.asked.append(
                 f'"{part}": write numbers without blanks, and not with three decimals'
             )
-            is_first = False
             continue
-        pieces = list(_pieces(part, is_first))
-        is_first = is_first and not part
+        pieces = list(_pieces(part, not number))
         for at, (piece, known) in enumerate(pieces):
             beside = pieces[max(0, at - 1) : at + 2]
-            if known is None:
-                continue
-            if any(other is None for _, other in beside):
-                pieces[at] = piece, {}  # what is beside may be part of it
-                continue
-            for name, value in known.items():
+            if known and any(other is None for _, other in beside):
+                known = {}  # what is beside may be part of it
+                pieces[at] = piece, known
+            for name, value in (known or {}).items():
                 if name == "designation":
                     line = line._replace(designation=str(value))
                 elif name in line.values:
@@ -201,6 +197,8 @@ def filled(text: str, cards: Mapping[str, Card], current: str) -> Filled:
         asked.append(f"the page has cards of {kinds}, and none of a {name}: nothing is filled in")
         return Filled(current, {}, {}, "", asked)
     card = cards[("bearing" if is_roller else "ball-bearing") if name else current]
+    is_radial = "Fr" in line.values and "Fa" not in line.values
+    line.values.update({"Fa": 0.0} if is_radial else {})
     for symbol, value in line.values.items():
         if not (target := SYMBOLS[symbol].get("target")):
             continue
@@ -213,6 +211,8 @@ def filled(text: str, cards: Mapping[str, Card], current: str) -> Filled:
             values[field.path] = typed
         except FieldError as error:
             asked.append(str(error))
+    if is_radial:
+        asked.append("no axial load in the line: it is 0")
     targets = {SYMBOLS[symbol].get("target") for symbol in SYMBOLS.keys() - line.values.keys()}
     kept = [field.label for field in card.fields if field.path in targets - {"bearing.count"}]
     if line.values and kept:
@@ -254,10 +254,8 @@ def _estimate(line: Line, card: Card) -> tuple[dict[str, str], str]:
     A `ValueError` says why they are not.
     """
     sizes = _dimensions(line.designation)
-    known: dict[str, float] = {
-        name: float(line.values.get(name, size)) for name, size in sizes.items()
-    }
-    known |= {name: float(line.values[name]) for name in NEEDED if name in line.values}
+    given = {name: line.values[name] for name in NEEDED if name in line.values}
+    known = {name: float(value) for name, value in (sizes | given).items()}
     if not known and not line.designation:
         return {}, ""
     if line.designation[:1].isalpha() or card.name != "ball-bearing":

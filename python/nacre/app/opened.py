@@ -1,8 +1,9 @@
-"""Files that a browser sends as a card: a case with its files, a height map or a profile."""
+"""Files that a browser sends as a card: a case with its files, a map, a profile or a curve."""
 
 from __future__ import annotations
 
 import base64
+import copy
 import dataclasses
 import hashlib
 import os
@@ -18,8 +19,8 @@ import numpy as np
 import nacre
 from nacre._tools.notices import heard
 from nacre._tools.units import number_in
-from nacre.app.answer import ERRORS
-from nacre.app.cards import Card, own_card
+from nacre.app.answer import ERRORS, Measured
+from nacre.app.cards import Card, cards, own_card
 from nacre.app.fields import tidy
 from nacre.case import Case, CaseError, templates, toml
 from nacre.results.rows import remark
@@ -30,10 +31,29 @@ LARGEST = 10_000_000
 """Largest size of all files together, in bytes."""
 LONGEST = 100
 """Largest number of characters of a name."""
-KINDS = {"height_map": "a height map", "profile": "the profile of a roller"}
+KINDS = {
+    "height_map": "a height map",
+    "profile": "the profile of a roller",
+    "curve": "a curve of a sphere that indents a body",
+    "film_curve": "a curve of a sphere that indents a film",
+}
 """What a file may be that is no case."""
-ASKED = re.compile(r"\b(kind|channel|unit|spacing) must be (?!left out)")
+ASKED = re.compile(
+    r"\b(kind|channel|unit|spacing|units|columns|depth|force|segment) must be (?!left out)"
+)
 """What a reader asks for."""
+KEYWORDS = re.compile(r", such as units=\{.*?\}|[;.] [gG]ive depth=.*")
+"""What readers say of their keywords, which the page has not."""
+INPUTS = {"depth": "columns", "force": "columns", "segment": "channel"}
+"""Inputs of the page for what readers of curves ask for."""
+MOST_POINTS = 2000
+"""Number of points up to which all of a curve are fitted: within a second."""
+MICROMETRES = 1e6
+"""Micrometres in a metre, micronewtons in a newton: cases of indentations are in these."""
+CURVE_NOTE = (
+    "The modulus holds for the numbers in the fields. Check the tip radius, Poisson's ratio, and "
+    "of a film its thickness and its substrate"
+)
 MILLIMETRES = 1e3
 """Millimetres in a metre: cases of files are in N and mm."""
 
@@ -42,9 +62,9 @@ class Asks(CaseError):
     """Files that cannot be read yet; `what` is the key that is asked for, or ""."""
 
     def __init__(self, message: str) -> None:
-        super().__init__(message)
+        super().__init__(KEYWORDS.sub("", message))
         found = ASKED.search(message)
-        self.what = found[1] if found else ""
+        self.what = INPUTS.get(found[1], found[1]) if found else ""
 
 
 def opened_card(files: Any) -> Card:
@@ -54,7 +74,7 @@ def opened_card(files: Any) -> Card:
     ----------
     files
         Tables ``contents``, of texts in base64 by file name, and ``reading``, of what readers ask
-        for: kind, channel, unit and spacing, as they were typed.
+        for: kind, channel, unit, spacing, columns and units, as they were typed.
 
     Returns
     -------
@@ -73,7 +93,10 @@ def opened_card(files: Any) -> Card:
             for file, content in contents.items():
                 (folder / file).write_bytes(content)
             with heard() as notes:
-                card = own_card(_case_file(folder, list(contents), reading))
+                if reading.get("kind", "").endswith("curve"):
+                    card = _curve_card(folder, list(contents), reading)
+                else:
+                    card = own_card(_case_file(folder, list(contents), reading))
         except (ImportError, OSError, *ERRORS) as error:
             words = str(error) or type(error).__name__
             for inside in (repr(f"{folder}{os.sep}")[1:-1], f"{folder}{os.sep}"):
@@ -83,7 +106,10 @@ def opened_card(files: Any) -> Card:
         remark(file, f"SHA-256 {hashlib.sha256(content).hexdigest()}")
         for file, content in contents.items()
     ]
-    measured = card.measured._replace(files=rows, notes=list(dict.fromkeys(notes)))
+    if "curve" in card.measured.arguments:
+        rows.append(remark("modulus of the film in the case", "starting value of the fit"))
+    notes = list(dict.fromkeys([*card.measured.notes, *notes]))
+    measured = card.measured._replace(files=rows, notes=notes)
     return dataclasses.replace(card, title=", ".join(contents), measured=measured)
 
 
@@ -118,15 +144,62 @@ def _case_file(folder: Path, names: list[str], reading: Mapping[str, str]) -> Pa
     if cases or len(names) > 1:
         raise CaseError(f"one case with its files, or one other file, must be opened, got {names}")
     if (kind := reading.get("kind", "")) not in KINDS:
-        raise CaseError(f"{names[0]}: kind must be chosen: {' or '.join(KINDS.values())}")
+        raise CaseError(f"{names[0]}: kind must be chosen: {', '.join(KINDS.values())}")
     spacing = {"spacing": number_in("m", reading["spacing"])} if "spacing" in reading else {}
     options: Data = spacing | ({"unit": reading["unit"]} if "unit" in reading else {})
     if channel := reading.get("channel"):
-        options["channel"] = int(channel) if channel.isdecimal() else channel
+        options["channel"] = _number_or_name(channel)
     make = _map if kind == "height_map" else _profile
     path = folder / f"{names[0]}.toml"
     path.write_text(toml.text(make(folder / names[0], options)), "utf-8")
     return path
+
+
+def _curve_card(folder: Path, names: list[str], reading: Mapping[str, str]) -> Card:
+    """Return the card of an indentation whose modulus is fitted to a curve."""
+    if len(names) > 1:
+        raise CaseError(f"one curve must be opened, got {names}")
+    read: Any = nacre.indent.read(folder / names[0], **_curve_options(reading))
+    curve = read.loading()
+    every = -(-len(curve) // MOST_POINTS)
+    depth, force = (MICROMETRES * part[::every] for part in (curve.depth, curve.force))
+    notes = [CURVE_NOTE, *filter(None, [curve.note])]
+    notes += [f"of {len(curve)} points one in {every} is fitted"] if every > 1 else []
+    card, left = cards()["indentation"], {"adhesion.work", "indent.load", "materials.film.young"}
+    data = copy.deepcopy(card.base)
+    data.pop("adhesion")
+    data["indent"]["load"] = float(f"{force.max():.5g}")
+    is_bare = reading["kind"] == "curve"
+    if is_bare:
+        left |= {path for path in card.by_path if path.startswith(("body", "materials.glass"))}
+        data["body"] = {"substrate": "film"}
+        data["materials"].pop("glass")
+    fields = [
+        field._replace(label=field.label.replace("film ", "" if is_bare else "film "))
+        for field in card.fields
+        if field.path not in left
+    ]
+    measured = Measured({"curve": nacre.indent.Curve(depth, force, name=curve.name)}, {}, (), notes)
+    changed = dataclasses.replace(card, name="own", group="own file", base=data, measured=measured)
+    return dataclasses.replace(changed, fields=fields, more=[])
+
+
+def _curve_options(reading: Mapping[str, str]) -> Data:
+    """Return what was typed as keywords of the reader of curves."""
+    channel = reading.get("channel")
+    options: Data = {"segment": _number_or_name(channel)} if channel else {}
+    for key in reading.keys() & {"columns", "units"}:
+        parts = re.split(r"\s*[,;]\s*", reading[key])
+        if len(parts) != 2:
+            raise CaseError(f"{key} must be two, of depth and force, got {reading[key]!r}")
+        pair = dict(zip(("depth", "force"), map(_number_or_name, parts), strict=True))
+        options |= {"units": pair} if key == "units" else pair
+    return options
+
+
+def _number_or_name(text: str) -> int | str:
+    """Return a column, a table or a channel, by its number or its name."""
+    return int(text) if text.isdecimal() else text
 
 
 def _map(path: Path, options: Data) -> Data:

@@ -257,8 +257,8 @@ class Case:
             store = self._inside("sweep.store", sweep.store)
         if store is not None:
             arguments["store"] = store
-        if isinstance(self._table, CaseTable) and self._table.stress is not None:
-            arguments["stress"] = self._without_friction(self._table.stress.keywords())
+        if (stress := self.stress()) is not None:
+            arguments["stress"] = stress
         if (fatigue := self.fatigue()) is not None:
             arguments["fatigue"] = fatigue
         return arguments

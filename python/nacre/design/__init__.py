@@ -15,9 +15,11 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import names_itself
-from nacre._tools.typing import Direction
+from nacre._tools.typing import ByLayer, Direction
 from nacre._tools.units import symbol
+from nacre.cards import Limits
 from nacre.contact.solution import Solution
+from nacre.contact.stresses import Bonds
 from nacre.design.optimise import Optimum, optimise
 from nacre.studies import ARGUMENTS, sweep
 from nacre.studies.outputs import Output, check_direction
@@ -42,6 +44,9 @@ def coating_chart(
     friction: float = 0.0,
     direction: Direction | None = None,
     refine: bool | float | None = 0.2,
+    yield_stress: Limits | None = None,
+    strength: ByLayer | None = None,
+    bond_strength: Bonds | None = None,
     **options: Any,
 ) -> xarray.Dataset:
     """Peak pressure and stresses for thicknesses and moduli of a single coating.
@@ -70,6 +75,8 @@ def coating_chart(
         `Solution.stress_summary` then solves finer cells around the most loaded places, which can
         take several times as long. None keeps the cells of the grid, as do contacts that cannot be
         refined: periodic ones and those with a hardness or given coefficients.
+    yield_stress, strength, bond_strength : optional
+        Limits as in `Solution.stress_summary`, for the verdict on each coating.
     options
         Arguments of `nacre.solve`, such as `load` and `counterbody`, and of `nacre.sweep`.
 
@@ -77,7 +84,7 @@ def coating_chart(
     -------
     xarray.Dataset
         ``peak_pressure``, ``coating_tension``, ``interface_shear``, ``contact_area`` and
-        ``approach``, as functions of ``thickness`` and ``young``.
+        ``approach``, as functions of ``thickness`` and ``young``; with limits also ``verdict``.
 
     Examples
     --------
@@ -101,7 +108,10 @@ def coating_chart(
 
     check_direction({"shape": shape, **contact_options}, friction, direction)
     refine = refine if _refinable(contact_options) else None
-    stress = {"friction": friction, "direction": direction, "refine": refine}
+    stress = {
+        **{"friction": friction, "direction": direction, "refine": refine},
+        **{"yield_stress": yield_stress, "strength": strength, "bond_strength": bond_strength},
+    }
     outputs = ["peak_pressure", "coating_tension", "interface_shear", "contact_area", "approach"]
     parameters = {"thickness": thickness, "young": young}
     dataset = sweep(case, parameters, outputs=outputs, stress=stress, **study)

@@ -117,7 +117,10 @@ class Fit(Shown, Result):
     known: dict[str, tuple[float, float]] = field(default_factory=dict)
     """Value and standard error of what is held, as far as they were given."""
 
-    _LATER = ("known",)
+    tolerance: float | None = None
+    """Largest standard error that the verdict tolerates, as a part of each free parameter."""
+
+    _LATER = ("known", "tolerance")
 
     @property
     def error_sources(self) -> dict[str, dict[str, float]]:
@@ -182,7 +185,7 @@ class Fit(Shown, Result):
         ValueError
             If the tolerance is not above 0 and finite.
         """
-        return fit_verdict(self, checked_tolerance(tolerance))
+        return fit_verdict(self, checked_tolerance(tolerance) or self.tolerance)
 
     def classical(self, curve: int = 0) -> list[Classical]:
         """Return what customary formulae would have said, with their bias against the fit.

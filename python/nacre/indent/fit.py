@@ -49,7 +49,7 @@ def fit(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     starts: Sequence[Mapping[str, float]] | None = None,
     profile: bool = True,
-    progress: Callable[[str], None] | None = None,
+    progress: Callable[[str], object] | None = None,
 ) -> Fit:
     """Fit indentation curves by least squares; needs ``nacre-contact[fit]``.
 

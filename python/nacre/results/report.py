@@ -199,7 +199,7 @@ def page(
         "Case file": case and markup("case", text=case),
     }
     head = {"case": name, "date": date, "computed by": tables.SOURCE, **(signed or {})}
-    (*drawn_and_checked,) = (head.pop(key, "") for key in SIGNED[3:])
+    drawn, checked = (head.pop(key, "") for key in SIGNED[3:])
     first, parts, last = (
         [
             markup("chapter", title=title, content=content)
@@ -217,8 +217,8 @@ def page(
         running="".join(c if c.isalnum() and c.isascii() else f"\\{ord(c):x} " for c in name),
         verdicts=[_verdict(verdict) for verdict in judgements],
         head=_pairs([remark(*pair) for pair in head.items()]),
-        drawn=drawn_and_checked[0],
-        checked=drawn_and_checked[1],
+        drawn=drawn,
+        checked=checked,
         chapters=[markup("columns", content=first), *parts, markup("columns", content=last)],
     )
 
@@ -393,8 +393,7 @@ def _heading(title: str) -> Markup | None:
 def _pairs(rows: Rows) -> Markup:
     """Return a table of names and texts, in which a zero has no exponent."""
     texts = ((row.label, in_words(_readable(row)).replace("0e+00", "0")) for row in rows)
-    pairs = [markup("pair", name=label, text=text) for label, text in texts]
-    return markup("pairs", rows=pairs)
+    return markup("pairs", rows=[markup("pair", name=name, text=text) for name, text in texts])
 
 
 def _readable(row: Row) -> str:
@@ -415,11 +414,8 @@ def _readable(row: Row) -> str:
 
 
 def _figures(pictures: Iterable[Drawing]) -> Markup:
-    figures = [
-        markup("figure", drawing=Markup(picture.drawing), caption=picture.caption)
-        for picture in pictures
-    ]
-    return markup("figures", figures=figures)
+    pairs = ((Markup(picture.drawing), picture.caption) for picture in pictures)
+    return markup("figures", figures=[markup("figure", drawing=d, caption=c) for d, c in pairs])
 
 
 def _table(members: Table) -> Markup:

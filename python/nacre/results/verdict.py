@@ -7,7 +7,7 @@ import math
 import tomllib
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
@@ -16,6 +16,8 @@ from nacre.results import display
 from nacre.results.base import Result
 
 Level = Literal["good", "fair", "bad", "unknown"]
+LEVELS = ("bad", "unknown", "fair", "good")
+"""Levels of verdicts, the worst first."""
 Method = TypeVar("Method", bound=Callable[..., Any])
 
 MARGIN = 1.5
@@ -131,6 +133,16 @@ def verdict_on(result: object) -> Verdict | None:
     """Return the verdict on a result that knows all limits, None where it has to be asked."""
     verdict = getattr(result, "verdict", None)
     return verdict() if isinstance(verdict, _Question) else None
+
+
+def worst_of(verdicts: Iterable[Verdict | None]) -> Verdict | None:
+    """Return the worst verdict, with the sentences of the others below; None of none."""
+    ranked = sorted(filter(None, verdicts), key=lambda verdict: LEVELS.index(verdict.level))
+    if not ranked:
+        return None
+    first, *others = ranked
+    lines = (line for verdict in others for line in verdict.sentences)
+    return replace(first, lines=tuple(dict.fromkeys([*first.lines, *lines])))
 
 
 @dataclass(frozen=True, repr=False)

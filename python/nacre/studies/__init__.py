@@ -27,6 +27,7 @@ from nacre.contact import roll, slide, solve, wear
 from nacre.contact.solution import Solution
 from nacre.fatigue import assess
 from nacre.results.journal import Journal, Record
+from nacre.results.verdict import verdict_on, worst_of
 from nacre.studies.dataset import assemble, failure_lines, layout
 from nacre.studies.identity import Identity, identity_of, key_of
 from nacre.studies.outputs import (
@@ -59,7 +60,7 @@ WEAR = frozenset(inspect.signature(wear).parameters) - {"store", "progress"}
 """Arguments of wear in a study, which has a store of its own."""
 NOTES = frozenset(("progress", "check"))
 """Keywords of what a solve says, which studies say themselves."""
-STRESS = keywords_of(Solution.stress_summary) - {*NOTES, "threads", "yield_stress", "strength"}
+STRESS = keywords_of(Solution.stress_summary) - {*NOTES, "threads"}
 FATIGUE = keywords_of(assess) - {*NOTES, "threads", "depths"}
 """Keywords of stresses and fatigue that studies take."""
 UNCOMPARED = (
@@ -132,7 +133,8 @@ def sweep(
         ISO/TS 16281.
     stress : mapping, optional
         Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
-        ``direction``, ``residual``, ``refine``.
+        ``direction``, ``residual``, ``refine``; and limits, ``yield_stress``, ``strength``,
+        ``bond_strength``, for the verdict on each case.
     fatigue : mapping, optional
         Arguments of `nacre.fatigue.assess` for the outputs of fatigue: ``criteria``,
         ``shear_yield``, ``friction``, ``direction``, ``residual``, ``body``, ``x``, ``rule``.
@@ -161,7 +163,8 @@ def sweep(
     -------
     xarray.Dataset
         Outputs with the parameters as coordinates. Where a case failed they are NaN, and ``error``
-        holds the reason; ``warnings`` holds the warnings of each solve. Peak pressure, approach and
+        holds the reason; ``warnings`` holds the warnings of each solve. With limits, ``verdict`` is
+        the level of each case, as `Verdict.level`, "" where it failed. Peak pressure, approach and
         load, peak and edge pressure of bearings, what `FrictionReport.discretisation` has, and
         stresses and ranges of stress have their errors due to the size of the cells next to them,
         such as ``peak_pressure_discretisation``, NaN where there is no estimate. The executor does
@@ -554,15 +557,17 @@ def _solve(
             solved = keywords.pop("bearing").solve(**keywords)
             messages = list(solved.report.warnings)
             notes = {"warnings": messages, "kinds": ["bearing"] * len(messages)}
+            notes |= _verdict([solved])
             return {"values": plain(solved, outputs, "bearing"), "bears": True} | notes
         if "rate" in arguments:
             return _wear_outputs(wear(**arguments), outputs)
         solution = _solution(arguments)
         normal = solution if isinstance(solution, Solution) else solution.normal
-        unresolved: list[str] = []
+        summaries: list[Any] = []
         threads = {"threads": arguments["threads"]}
         rate = partial(assess, solution, **threads, **fatigue)
-        values = output_values(solution, outputs, threads | stress, unresolved, rate)
+        values = output_values(solution, outputs, threads | stress, summaries, rate)
+        unresolved = [text for summary in summaries for text in summary.warnings]
         kinds = [warning["kind"] for warning in normal.report.to_dict()["warnings"]]
         record = {
             "values": values,
@@ -571,9 +576,17 @@ def _solve(
         }
         rolling = not isinstance(solution, Solution) and rolls(solution)
         marks = {"line": normal.report.grid.is_line, "rolls": rolling}
-        return record | {name: True for name, holds in marks.items() if holds}
+        marked = {name: True for name, holds in marks.items() if holds}
+        return record | marked | _verdict(summaries)
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": _reason(error)} | _marks(arguments)
+
+
+def _verdict(results: Sequence[object]) -> Record:
+    """Return the worst level of the verdicts on results whose limits are given."""
+    verdicts = [verdict for verdict in map(verdict_on, results) if verdict and verdict.question]
+    worst = worst_of(verdicts)
+    return {"verdict": worst.level} if worst else {}
 
 
 def _marks(arguments: Mapping[str, Any]) -> Record:

@@ -156,10 +156,14 @@ def assemble(
         dataset[name].attrs = {"long_name": words}
         if quantity in units:
             dataset[name].attrs["units"] = symbol(units[quantity])
-    for name, texts in {
+    texts_of = {
         "error": [r.get("error", "") for r in records],
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],
-    }.items():
+        "verdict": [r.get("verdict", "") for r in records],
+    }
+    if not any(texts_of["verdict"]):  # no limits are given
+        del texts_of["verdict"]
+    for name, texts in texts_of.items():
         dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
     arguments = _arguments(kinds)
     for name in map(str, dataset.coords):

@@ -62,6 +62,9 @@ CLASSES: dict[CaseKind, str] = {
 }
 """Classes of results."""
 
+TEXTS = ("error", "warnings", "verdict")
+"""Variables of a study that are texts."""
+
 Estimated = tuple[float, float]
 """A number, and its error due to the size of the cells, estimated; NaN where it is not known."""
 
@@ -179,8 +182,8 @@ def outputs_by_name(
         if not (any(output in _names(kind) for kind in kinds) or callable(output)):
             all_choices = ", ".join(map(_choices, kinds))
             raise ValueError(f"outputs must be {all_choices}, or functions, got {output!r}")
-        if name in ("error", "warnings"):
-            raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
+        if name in TEXTS:
+            raise ValueError(f"outputs must not have the names {', '.join(TEXTS)}, got {name!r}")
     by_name = dict(items)
     if not by_name or len(by_name) != len(items):
         names = [name for name, _ in items]
@@ -238,13 +241,13 @@ def output_values(
     solution: Solution | FrictionSolution,
     outputs: Mapping[str, Output],
     stress: Mapping[str, Any],
-    unresolved: list[str],
+    summaries: list[Any],
     assess: Callable[[], FatigueSummary],
 ) -> dict[str, object]:
     """Return the outputs of a solution as plain numbers; stresses and fatigue are summed up once.
 
-    The errors of outputs are among them; they are NaN where there is no estimate. Warnings about
-    stresses that the cells do not resolve are added to `unresolved`.
+    The errors of outputs are among them; they are NaN where there is no estimate. The summaries of
+    stresses and fatigue are added to `summaries`.
     """
     summary = fatigue = None
     numbers: dict[str, object] = {}
@@ -255,12 +258,12 @@ def output_values(
         elif output in STRESSES:
             if summary is None:
                 summary = solution.stress_summary(**stress)
-                unresolved += summary.warnings
+                summaries.append(summary)
             value, extreme_errors[output] = max(STRESSES[output](summary), default=NO_PART)
         elif output in FATIGUES or output in MARGINS:
             if fatigue is None:
                 fatigue = assess()
-                unresolved += fatigue.warnings
+                summaries.append(fatigue)
             if output in FATIGUES:
                 value, extreme_errors[output] = max(FATIGUES[output](fatigue), default=NO_PART)
             else:

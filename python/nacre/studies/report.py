@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,8 @@ from nacre.results.quantities import ERROR
 from nacre.results.report import Rows, Table, label_of, table, write
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
+from nacre.results.verdict import LEVELS
+from nacre.studies.outputs import TEXTS
 
 if TYPE_CHECKING:
     import xarray
@@ -45,7 +48,7 @@ class Study(Shown):
     @property
     def _outputs(self) -> list[str]:
         """Names of the outputs that are numbers of each case."""
-        names = [str(name) for name in self.dataset.data_vars if name not in ("error", "warnings")]
+        names = [str(name) for name in self.dataset.data_vars if name not in TEXTS]
         return [n for n in names if not n.endswith(ERROR) and self.dataset[n].dims == self._dims]
 
     def _report_rows(self) -> Rows:
@@ -53,7 +56,13 @@ class Study(Shown):
         failed = int((dataset["error"] != "").sum()) if "error" in dataset else 0
         cases = int(np.prod([dataset.sizes[dim] for dim in self._dims]))
         ranges = [Row(name, label_of(name), self._range(name)) for name in self._outputs]
-        return [remark("cases", f"{cases}, {failed} failed"), *ranges]
+        rows = [remark("cases", f"{cases}, {failed} failed")]
+        if "verdict" in dataset:
+            counts = Counter(np.ravel(dataset["verdict"].values).tolist())
+            rows.append(
+                remark("verdicts", ", ".join(f"{counts[k]} {k}" for k in LEVELS[::-1] if counts[k]))
+            )
+        return [*rows, *ranges]
 
     def _charts(self) -> Sequence[Picture]:
         return [chart for name in self._outputs for chart in self._charts_of(name)]
@@ -102,10 +111,13 @@ class Study(Shown):
         """Return the table of all cases, and that of those that failed."""
         names = self._outputs
         kept = [*names, *(name + ERROR for name in names if name + ERROR in self.dataset)]
-        rows = self.dataset[[*kept, *(["error"] if "error" in self.dataset else [])]]
+        kept += [name for name in ("verdict", "error") if name in self.dataset]
+        rows = self.dataset[kept]
         frame = rows.to_dataframe().reset_index()
         places = [str(name) for name in frame.columns if name in self.dataset.coords]
         columns = {self._head(name): frame[name].tolist() for name in places}
+        if "verdict" in frame:
+            columns["verdict"] = frame["verdict"].tolist()
         for name in names:
             columns[self._head(name)] = frame[name].tolist()
             if name + ERROR in frame:

@@ -349,6 +349,20 @@ def test_the_report_has_the_number(opened: Opened, browser: Any, tmp_path: Path)
     context.close()
 
 
+@pytest.mark.parametrize(
+    ("kind", "most"), [("contact", 1), ("ball-bearing", 1), ("roll", 1), ("pair", 2)]
+)
+def test_reports_are_short_on_paper(kind: str, most: int, browser: Any, tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(templates.texts()[kind], encoding="utf-8")
+    report = tmp_path / "case.html"
+    assert command("solve", tmp_path / "case.toml", "--save", report) == 0
+    page = browser.new_page()
+    page.goto(report.as_uri())
+    printed = page.pdf(prefer_css_page_size=True)
+    page.close()
+    assert 1 <= len(re.findall(rb"/Type\s*/Page\b", printed)) <= most
+
+
 def test_markup_in_names_does_nothing(browser: Any, tmp_path: Path) -> None:
     bad = "<img src=x onerror=alert(1)>"
     text = templates.texts()["line"].replace("coating =", f'"{bad}" =', 1)

@@ -113,16 +113,19 @@ def test_bearings_without_a_card_fill_nothing(name: str) -> None:
 
 def test_numbers_out_of_the_range_of_a_field_are_asked() -> None:
     line = filled("Fr 5 MN, n 3000", cards(), "ball-bearing")
-    assert line.values == {"bearing.solve.speed": "3000"}
+    assert line.values == {"bearing.solve.speed": "3000", "bearing.solve.force.z": "0"}
     assert line.asked[0] == "radial load must be between 0.01 and 1000 kN, got 5000"
 
 
-def test_loads_that_a_line_does_not_have_are_named() -> None:
+def test_a_radial_load_alone_has_no_axial_load_beside_it() -> None:
     line = filled("Fr 5 kN, life 1000", cards(), "ball-bearing")
+    assert line.values["bearing.solve.force.z"] == "0"
     assert line.asked == [
-        "not in the line, and left as it is: axial load, speed, "
-        "oil, ISO VG, oil temperature, cleanliness"
+        "no axial load in the line: it is 0",
+        "not in the line, and left as it is: speed, oil, ISO VG, oil temperature, cleanliness",
     ]
+    axial = filled("Fa 5 kN, life 1000", cards(), "ball-bearing")
+    assert axial.asked[0].startswith("not in the line, and left as it is: radial load, speed")
 
 
 # Balls of catalogues: 9 of 5/16", 9 of 3/8", 8 of 13/32" within a hundredth, by ratings of SKF and

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+import nacre
+from nacre._tools.markup import text_of
 from nacre.app import opened as opened_module
 from nacre.app.answer import answer, file_text
 from nacre.app.opened import LARGEST, Asks, opened_card
@@ -155,6 +157,81 @@ def test_a_profile_is_that_of_a_roller() -> None:
     assert "error" not in answer(card.case({}), "draft", measured=card.measured)
 
 
+def curve_text(film: nacre.Elastic, body: nacre.HalfSpace, head: str) -> bytes:
+    """Return the text of a curve in nm and mN, with noise, an approach and an unloading."""
+    tip = nacre.indent.Tip.sphere(8e-6)
+    depth = np.linspace(-20e-9, 200e-9, 300)
+    made = nacre.indent.Indentation(body, tip).curve(approach=depth[depth > 0])
+    force = np.append(np.zeros(np.count_nonzero(depth <= 0)), made.load)
+    noise = 0.002 * force.max() * np.random.default_rng(2).standard_normal(force.size)
+    depth, force = (np.append(rise, rise[:150:-1]) for rise in (depth, force + noise))
+    rows = (f"{1e9 * d:.4f};{1e3 * f:.8f}" for d, f in zip(depth, force, strict=True))
+    return "\n".join([*([head] if head else []), *rows]).encode()
+
+
+GLASS = nacre.Elastic(70e9, 0.22)
+
+
+@pytest.mark.filterwarnings("ignore")  # of a wrong radius
+@pytest.mark.parametrize("kind", ["curve", "film_curve"])
+@pytest.mark.parametrize("young", [0.8e9, 40e9])
+def test_a_curve_has_its_modulus(kind: str, young: float) -> None:
+    film = nacre.Elastic(young, 0.3)
+    layered = nacre.HalfSpace(GLASS, [nacre.Layer(film, 0.7e-6)])
+    body = layered if kind == "film_curve" else nacre.HalfSpace(film)
+    content = curve_text(film, body, "Depth [nm];Load [mN]")
+    card = opened_card(sent({"kind": kind}, mine_txt=content))
+    assert {"materials.film.young", "indent.load", "adhesion.work"}.isdisjoint(card.by_path)
+    values = {"tip.radius": "8", "materials.film.poisson": "0.3", "indent.tolerance": "10"}
+    values |= {"body.layers[0].thickness": "700"} if kind == "film_curve" else {}
+    reply = answer(card.case(values), "draft", measured=card.measured, shown=card.shown)
+    assert reply["next"] is None
+    parts = reply["parts"]
+    assert parts["peak"][0] == f"modulus of the {'film' if kind == 'film_curve' else 'substrate'}"
+    assert all(("film" in field.label) <= (kind == "film_curve") for field in card.fields)
+    number, unit = parts["peak"][1].split()
+    assert_close(float(number), young / 1e9, rtol=0.02)  # ten times what its noise leaves
+    assert unit == "GPa"
+    assert "± " in parts["rows"]
+    assert parts["verdict"]["level"] == "good"
+    assert parts["picture-1"].count("<svg") == parts["picture-2"].count("<svg") == 1
+    assert any("for the numbers in the fields" in text for text in parts["warnings"])
+    report = answer(card.case(values), "report", measured=card.measured)["report"]
+    assert hashlib.sha256(content).hexdigest() in report
+    assert "10 % tolerated" in report
+    wrong = answer(card.case(values | {"tip.radius": "16"}), "draft", measured=card.measured)
+    assert wrong["parts"]["peak"] != parts["peak"]
+
+
+def test_a_curve_asks_for_columns_and_units() -> None:
+    content = curve_text(GLASS, nacre.HalfSpace(GLASS), "")
+    reading = {"kind": "curve"}
+    for key, value in [("columns", "0, 1"), ("units", "nm; mN")]:
+        assert asked(sent(reading | {key: "0"}, c_txt=content)).what in ("columns", "units")
+        error = asked(sent(reading, c_txt=content))
+        assert error.what == key
+        assert "=" not in str(error)  # no keywords of Python
+        reading[key] = value
+    curve = opened_card(sent(reading, c_txt=content)).measured.arguments["curve"]
+    # In the units of the case, up to the largest force.
+    assert_close(curve.depth[-1], 0.2, atol=2e-3)
+    assert_close(curve.depth[0], -0.02, atol=1e-5)
+
+
+def test_the_page_has_an_input_for_all_that_is_asked() -> None:
+    page = text_of("nacre.app", "static/page.html")
+    assert [kind for kind in opened_module.KINDS if f'<option value="{kind}">' not in page] == []
+    for key in ("kind", "channel", "unit", "units", "spacing", "columns"):
+        assert f'data-reading="{key}"' in page
+
+
+def test_a_long_curve_is_thinned_and_says_so() -> None:
+    rows = "\n".join(f"{d} {d**1.5:.6f}" for d in range(5001))
+    card = opened_card(sent({"kind": "curve"}, c_txt=f"depth(nm) force(nN)\n{rows}".encode()))
+    assert len(card.measured.arguments["curve"]) == 1667
+    assert "of 5001 points one in 3 is fitted" in card.measured.notes
+
+
 def test_what_readers_warn_of_is_shown() -> None:
     holes = MATRIX.replace(b"100.0", b"nan")
     reading = {"kind": "height_map", "spacing": "1 µm", "unit": "nm"}
@@ -165,7 +242,7 @@ def test_what_readers_warn_of_is_shown() -> None:
 
 @pytest.mark.parametrize("content", [b"", b"\x00\xff" * 99, b"x y\n1 2", b"[[[", b"nan\n"])
 @pytest.mark.parametrize("name", ["a.npy", "a.txt", "a.nc", "a.x3p", "a.toml", "a"])
-@pytest.mark.parametrize("kind", ["height_map", "profile"])
+@pytest.mark.parametrize("kind", ["height_map", "profile", "curve"])
 def test_any_content_is_a_card_or_a_sentence(content: bytes, name: str, kind: str) -> None:
     files = {"contents": {name: base64.b64encode(content).decode()}, "reading": {"kind": kind}}
     assert str(asked(files))

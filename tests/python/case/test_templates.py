@@ -171,3 +171,5 @@ def test_pictures_of_indentation_are_curves(kind: str, tmp_path: Path, capsys: C
 def test_the_sweep_has_all_its_cases(tmp_path: Path, capsys: Capture) -> None:
     numbers = solved("sweep", tmp_path, capsys)
     assert sum(map(len, numbers["data_vars"]["error"]["data"])) == 9
+    levels = {level for row in numbers["data_vars"]["verdict"]["data"] for level in row}
+    assert levels == {"good", "fair"}

@@ -283,6 +283,58 @@ def test_cases_of_a_study_say_whether_their_cells_resolve_the_stress() -> None:
     assert cases.head[-1] == "resolved"
 
 
+LIMITS: dict[str, Any] = {
+    "yield_stress": {"substrate": 1.2e9},
+    "strength": {0: 0.9e9},
+    "bond_strength": (4e8, 4e8),
+}
+
+
+def test_cases_of_a_study_have_the_verdict_of_their_own_summary() -> None:
+    def coated(load: float) -> dict[str, Any]:
+        body = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.2), 5e-6)])
+        return {"shape": BALL, "body": body, "load": load, "max_cells": 4096}
+
+    loads, outputs = [2.0, 20.0, 200.0], ["von_mises", "interface_shear"]
+    study = quiet(nacre.sweep, coated, {"load": [*loads, -1.0]}, outputs=outputs, stress=LIMITS)
+    levels = [quiet(nacre.solve(**coated(load)).verdict, **LIMITS).level for load in loads]
+    assert len(set(levels)) > 1
+    assert study["verdict"].values.tolist() == [*levels, ""]
+    (cases, _) = Study(study)._tables()
+    column = cases.head.index("verdict")
+    assert [row[column] for row in cases.rows] == [*levels, ""]
+    rows = {row.key or row.label: row.text for row in Study(study)._report_rows()}
+    counts = dict(text.split()[::-1] for text in rows["verdicts"].split(", "))
+    assert counts == {level: str(levels.count(level)) for level in levels}
+    assert "± of interface shear" in cases.head
+    without = quiet(nacre.sweep, coated, {"load": loads[:1]}, outputs=outputs)
+    assert "verdict" not in without
+    chart = design.coating_chart(
+        *(BALL, STEEL),
+        thickness=[5e-6],
+        young=[420e9],
+        poisson=0.2,
+        refine=None,
+        load=loads[1],
+        max_cells=4096,
+        **LIMITS,
+    )
+    assert chart["verdict"].values.tolist() == [[levels[1]]]
+
+
+def test_bearings_of_a_study_have_their_verdict() -> None:
+    ball = bearing.AngularContactBall(
+        count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+    )
+    case = {"bearing": ball, "model": "iso16281", "static_safety": 1.5}
+    forces = [(1e3, 0.0, 2e3), (3e3, 0.0, 9e3)]
+    study = quiet(nacre.sweep, case, {"force": forces}, outputs=["peak_pressure"])
+    assert study["verdict"].values.tolist() == [
+        ball.solve(force=force, model="iso16281").verdict(static_safety=1.5).level
+        for force in forces
+    ]
+
+
 def test_curves_of_a_study_have_their_errors() -> None:
     case = {"shape": nacre.Sphere(5e-3), "body": STEEL, "max_cells": 4096}
     study = quiet(nacre.sweep, case, {"load": [5.0, 10.0]}, outputs=["peak_pressure"])
