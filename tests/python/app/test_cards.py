@@ -30,7 +30,7 @@ CARDS = list(cards())
 
 
 def parts_of(card: Card, values: dict[str, str], stage: str = "") -> Answer:
-    """Return the parts of the last answer on few cells, or of a stage, or an error in a sentence."""
+    """Return the parts of a stage, or of the last, on few cells, or an error in a sentence."""
     case = card.case(values)
     data: dict[str, Any] = case.data
     if case.kind == "contact" and "grid" not in data and "solve.max_cells" not in values:
