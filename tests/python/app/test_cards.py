@@ -29,15 +29,15 @@ LAST = {"contact": "stress", "wear": "full", "bearing": "full", "indent": "full"
 CARDS = list(cards())
 
 
-def last_parts(card: Card, values: dict[str, str]) -> Answer:
-    """Return the parts of the last answer on few cells, or an error in a sentence."""
+def parts_of(card: Card, values: dict[str, str], stage: str = "") -> Answer:
+    """Return the parts of a stage, or of the last, on few cells, or an error in a sentence."""
     case = card.case(values)
     data: dict[str, Any] = case.data
     if case.kind == "contact" and "grid" not in data and "solve.max_cells" not in values:
         data["solve"]["max_cells"] = 4096
     if case.kind == "bearing":
         data["bearing"]["solve"].setdefault("cells", [40, 8])
-    reply = answer(Case(data, case.name), LAST[case.kind], measured=card.measured)
+    reply = answer(Case(data, case.name), stage or LAST[case.kind], measured=card.measured)
     parts: Answer = reply.get("parts", reply)
     verdict = parts.get("verdict", {})
     for key in verdict.keys() & {"factor", "uncertainty"}:
@@ -62,17 +62,18 @@ def others(field: Field) -> list[str]:
     return [f"{number:.12g}" for number in numbers if field.low <= number <= field.high]
 
 
-def acts(card: Card, field: Field, before: Answer, may_be_refused: bool) -> bool:
-    """Return whether another value changes the answer."""
+def acts(card: Card, field: Field, before: list[Answer], may_be_refused: bool) -> bool:
+    """Return whether another value changes the draft or, which takes longer, the last answer."""
     for typed in others(field):
-        try:
-            after = last_parts(card, {field.path: typed})
-        except FieldError:
-            continue
-        except ValueError as error:
-            after = {"error": str(error)}
-        if after != before and ("error" not in after or may_be_refused):
-            return True
+        for stage, parts in zip(("draft", ""), before, strict=True):
+            try:
+                after = parts_of(card, {field.path: typed}, stage)
+            except FieldError:
+                continue
+            except ValueError as error:
+                after = {"error": str(error)}
+            if after != parts and ("error" not in after or may_be_refused):
+                return True
     return False
 
 
@@ -80,8 +81,8 @@ def acts(card: Card, field: Field, before: Answer, may_be_refused: bool) -> bool
 @pytest.mark.parametrize("name", CARDS)
 def test_every_field_of_a_card_acts(name: str) -> None:
     card = cards()[name]
-    before = last_parts(card, {})
-    assert "error" not in before
+    before = [parts_of(card, {}, stage) for stage in ("draft", "")]
+    assert all("error" not in parts for parts in before)
     idle = [field.path for field in card.by_path.values() if not acts(card, field, before, False)]
     assert idle == []
 
@@ -92,8 +93,8 @@ def test_every_number_of_a_template_acts(name: str, tmp_path: Path) -> None:
     path = tmp_path / f"{name}.toml"
     path.write_text(templates.texts()[name], encoding="utf-8")
     card = own_card(path)
-    before = last_parts(card, {})
-    assert "error" not in before
+    before = [parts_of(card, {}, stage) for stage in ("draft", "")]
+    assert all("error" not in parts for parts in before)
     idle = [field.path for field in card.by_path.values() if not acts(card, field, before, True)]
     assert idle == []
 
@@ -141,13 +142,13 @@ def test_every_entry_is_accepted_and_no_worse_than_its_numbers(name: str) -> Non
     for material, entry, numbers in menu_entries(name):
         values = chosen(card, material, numbers)
         case = card.case(values)
-        by_name = last_parts(card, values)
+        by_name = parts_of(card, values)
         assert "error" not in by_name, (material, entry, by_name)
         # Numbers that are typed, each in its last digit another: no card has them.
         typed = {
             path: f"{float(text) * (1 + 1e-7):.9g}" if text else "" for path, text in values.items()
         }
-        by_hand = last_parts(card, typed)
+        by_hand = parts_of(card, typed)
         if material_of(case, material) == entry:
             assert "(given)" not in str(by_name["verdict"]) or "(given)" in str(by_hand["verdict"])
         levels = [LEVELS.index(parts["verdict"]["level"]) for parts in (by_name, by_hand)]
@@ -159,7 +160,7 @@ def test_a_steel_without_a_source_keeps_the_yield_stress_that_was_typed() -> Non
     assert "yield_stress" not in entries["100Cr6"]
     assert entries["440C"]["yield_stress"] == 1.896e9
     assert entries["Si3N4"]["yield_stress"] is None  # which is brittle
-    verdict = last_parts(cards()["contact"], chosen(cards()["contact"], "steel", entries["100Cr6"]))
+    verdict = parts_of(cards()["contact"], chosen(cards()["contact"], "steel", entries["100Cr6"]))
     assert "limit 2200 MPa (given)" in str(verdict["verdict"])
 
 
@@ -168,9 +169,9 @@ def test_a_chosen_card_is_named_in_case_and_verdict() -> None:
     entries = {entry: numbers for material, entry, numbers in menu_entries("contact")}
     values = chosen(card, "steel", entries["440C"])
     assert material_of(card.case(values), "steel") == "440C"
-    assert "(card 440C)" in str(last_parts(card, values)["verdict"])
+    assert "(card 440C)" in str(parts_of(card, values)["verdict"])
     typed = values | {"materials.steel.yield_stress": "1900"}
-    assert "(given)" in str(last_parts(card, typed)["verdict"])
+    assert "(given)" in str(parts_of(card, typed)["verdict"])
 
 
 def test_a_card_of_a_case_file_becomes_fields(tmp_path: Path) -> None:
@@ -180,20 +181,20 @@ def test_a_card_of_a_case_file_becomes_fields(tmp_path: Path) -> None:
     card = own_card(path)
     assert card.by_path["materials.steel.yield_stress"].default == 1896.0
     assert material_of(card.case({}), "steel") == "440C"
-    assert "(card 440C)" in str(last_parts(card, {})["verdict"])
+    assert "(card 440C)" in str(parts_of(card, {})["verdict"])
 
 
 def test_a_bond_strength_is_a_field() -> None:
     for name in ("contact", "line"):
         card = cards()[name]
         values = {f"body.layers[0].bond_strength.{key}": "1" for key in ("shear", "tension")}
-        verdict: Any = last_parts(card, values)["verdict"]
+        verdict: Any = parts_of(card, values)["verdict"]
         assert verdict["level"] == "bad"
         assert "below the coating" in verdict["words"]
         assert "limit 1 MPa (given)" in verdict["words"]
 
 
 def test_the_verdict_of_the_page_has_all_fields() -> None:
-    verdict = last_parts(cards()["line"], {})["verdict"]
+    verdict = parts_of(cards()["line"], {})["verdict"]
     names = "level question decided_by doubts inside_model factor words lines"
     assert verdict.keys() >= set(names.split())
