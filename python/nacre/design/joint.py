@@ -22,8 +22,7 @@ from nacre.hertz import contact_modulus
 from nacre.results import display, files
 from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import Quantity, frozen, quantity
-from nacre.results.report import Rows, Table
-from nacre.results.rows import Row, remark
+from nacre.results.report import Table
 from nacre.results.shown import Printed, TableResult
 from nacre.results.tables import SOURCE, heading, write_rows
 from nacre.rough import corrected_area, map_grid, spectral_slope
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Program = Literal["calculix", "moose"]
-ENDINGS = {"calculix": ".inp", "moose": ".csv"}
 OVER = ("pressure",)
 UNITS = {"thermal": "W/K/m²", "electrical": "S/m²"}
 FACTOR, EXPONENT = 1.55, 0.94
@@ -81,43 +79,37 @@ class JointConductance(TableResult):
         def column(values: Iterable[float] | None) -> Field | None:
             return None if values is None else numbers(values)
 
-        readers: dict[str, Callable[[Any], object]] = {r.name: column for r in cls._QUANTITIES}
+        readers: dict[str, Any] = dict.fromkeys((row.name for row in cls._QUANTITIES), column)
+        readers |= {"notes": lambda texts: tuple(map(word, texts))}
         readers |= {"conducted": word, "surfaces": int}
-        readers["notes"] = lambda texts: tuple(map(word, texts))
         return cls(**read_fields(cls.__name__, state, **readers))
 
     def __eq__(self, other: object) -> bool:
         """Return whether all fields are equal."""
-        if not isinstance(other, JointConductance):
-            return NotImplemented
-        return self._state() == other._state()
+        return isinstance(other, JointConductance) and self._state() == other._state()
+
+    def __repr__(self) -> str:
+        """Return how many pressures and surfaces there are."""
+        return f"<JointConductance: pressures {self.pressure.size}, surfaces {self.surfaces}>"
 
     def _si(self, row: Quantity) -> str:
         return UNITS[self.conducted] if row.unit == UNITS["thermal"] else row.si()
 
-    def _rows(self) -> list[Row]:
-        return []
-
-    def _report_rows(self) -> Rows:
-        return [remark("surfaces", f"{self.surfaces}")]
-
     def _table(self) -> Printed:
-        def errors(values: Field) -> list[str]:
-            shares = 100 * values / self.conductance
-            return [f"{rounded(share, 1)} %" for share in shares.tolist()]
+        def column(head: str, values: Field, unit: str) -> tuple[str, list[str]]:
+            return display.column(head, values.tolist(), unit)
 
-        def named(name: str, values: Field, unit: str) -> tuple[str, list[str]]:
-            return display.column(name, values.tolist(), unit)
+        def shares(head: str, values: Field) -> tuple[str, list[str]]:
+            return head, [f"{rounded(100 * value, 2)} %" for value in values.tolist()]
 
-        unit = UNITS[self.conducted]
-        columns = [named("mean pressure", self.pressure, "Pa")]
-        columns += [named("conductance", self.conductance, unit), ("±", errors(self.uncertainty))]
+        unit, value = UNITS[self.conducted], self.conductance
+        columns = [column("mean pressure", self.pressure, "Pa"), column("conductance", value, unit)]
+        columns.append(shares("±", self.uncertainty / value))
         if self.deviation is not None:
-            columns.append((f"± of {self.surfaces} surfaces", errors(self.deviation)))
-        shares = [f"{rounded(100 * share, 3)} %" for share in self.share.tolist()]
-        columns.append(("in contact", shares))
+            columns.append(shares(f"± of {self.surfaces} surfaces", self.deviation / value))
+        columns.append(shares("in contact", self.share))
         if self.mikic is not None:
-            columns.append(named("Mikic", self.mikic, unit))
+            columns.append(column("Mikic", self.mikic, unit))
         heads, texts = zip(*columns, strict=True)
         return Printed(heads, [*zip(*texts, strict=True)], (), ">")
 
@@ -134,9 +126,8 @@ class JointConductance(TableResult):
         return [Chart("Conductance per area over the mean pressure.", curves, axes)]
 
     def _file_rows(self) -> list[tuple[object, ...]]:
-        known = self._known
-        columns = [row.of(self).tolist() for row in known]
-        return [tuple(heading(row, self) for row in known), *zip(*columns, strict=True)]
+        columns = (row.of(self).tolist() for row in self._known)
+        return [tuple(heading(row, self) for row in self._known), *zip(*columns, strict=True)]
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the conductance over the mean pressure, with Mikic's correlation as a thin line.
@@ -185,19 +176,16 @@ class JointConductance(TableResult):
         ValueError
             If the program is another one, or the file has another ending.
         """
-        if program not in ENDINGS:
-            raise ValueError(f"program must be one of {(*ENDINGS,)}, got {program!r}")
         pairs = [(0.0, 0.0), *zip(self.pressure.tolist(), self.conductance.tolist(), strict=True)]
-
-        def write(path: Path) -> None:
-            if program == "moose":
-                write_rows(path, pairs, source=SOURCE)
-                return
-            # Fields of 20 characters are read.
-            lines = [f"{value:.12g}, {pressure:.12g}, 0." for pressure, value in pairs]
-            path.write_text("\n".join([f"** {SOURCE}", "*GAP CONDUCTANCE", *lines, ""]), "utf-8")
-
-        return files.save(path, {ENDINGS[program]: write})
+        card = [f"** {SOURCE}", "*GAP CONDUCTANCE"]  # of numbers, 20 characters are read
+        card += [f"{value:.12g}, {pressure:.12g}, 0." for pressure, value in pairs]
+        writers: dict[str, dict[str, Callable[[Path], object]]] = {
+            "calculix": {".inp": lambda path: path.write_text("\n".join([*card, ""]), "utf-8")},
+            "moose": {".csv": lambda path: write_rows(path, pairs, source=SOURCE)},
+        }
+        if program not in writers:
+            raise ValueError(f"program must be one of {(*writers,)}, got {program!r}")
+        return files.save(path, writers[program])
 
 
 def joint_conductance(
@@ -291,15 +279,10 @@ def joint_conductance(
                 notes |= dict.fromkeys(one.notes)
                 if tell is not None:
                     tell((j * loads.size + k + 1) / found[..., 0].size)
-    mean = found.mean(axis=0)
-    scatter = None
-    if len(shapes) > 1:
-        scatter = found[..., 0].std(axis=0, ddof=1) / math.sqrt(len(shapes))
-    by_mikic = [_mikic(shape, contact, loads, through) for shape in shapes]
-    known = [values for values in by_mikic if values is not None]
-    mikic = np.mean(known, axis=0) if len(known) == len(shapes) else None
-    columns = (loads, mean[:, 0], mean[:, 1], scatter, mean[:, 2], mikic)
-    return JointConductance(*columns, kind, len(shapes), tuple(notes))
+    n, (mean, error, share) = len(shapes), found.mean(axis=0).T
+    deviation = found[..., 0].std(axis=0, ddof=1) / math.sqrt(n) if n > 1 else None
+    mikic = _mikic(shapes, contact, loads, through)
+    return JointConductance(loads, mean, error, deviation, share, mikic, kind, n, tuple(notes))
 
 
 def _cells(shape: core.Shape, grid: core.Grid | None) -> core.Grid:
@@ -314,18 +297,20 @@ def _cells(shape: core.Shape, grid: core.Grid | None) -> core.Grid:
 
 
 def _mikic(
-    shape: core.Shape, contact: Contact, pressures: Field, through: Mapping[str, Any]
+    shapes: Sequence[core.Shape], contact: Contact, pressures: Field, through: Mapping[str, Any]
 ) -> Field | None:
-    """Return the conductance by Mikic's correlation, or None where it does not apply."""
+    """Return the mean by Mikic's correlation, or None where it does not apply."""
+    maps = [shape for shape in shapes if isinstance(shape, core.HeightMap)]
     bodies: list[Any] = [contact.body, contact.counterbody or core.HalfSpace(core.RIGID)]
-    if not isinstance(shape, core.HeightMap) or any(getattr(b, "layers", True) for b in bodies):
+    if len(maps) < len(shapes) or any(getattr(body, "layers", True) for body in bodies):
         return None
-    elastic = [b.substrate for b in bodies if isinstance(b.substrate, core.Elastic)]
+    elastic = [body.substrate for body in bodies if isinstance(body.substrate, core.Elastic)]
     resistivity = sum(
         1 / conductivities_of(name, through[name], body, through["kind"])[-1]
         for name, body in zip(("conductivity", "counter_conductivity"), bodies, strict=True)
     )
-    slope = spectral_slope(shape) / math.sqrt(math.pi)
-    strain = math.sqrt(2) * pressures / (contact_modulus(*elastic) * slope)
-    factor = FACTOR * 2 / resistivity * slope / float(shape.heights.std())
-    return np.asarray(factor * strain**EXPONENT)
+    slopes = np.array([[spectral_slope(one) / math.sqrt(math.pi)] for one in maps])
+    heights = np.array([[one.heights.std()] for one in maps])
+    strain = math.sqrt(2) * pressures / (contact_modulus(*elastic) * slopes)
+    values = FACTOR * 2 / resistivity * slopes / heights * strain**EXPONENT
+    return np.asarray(values.mean(axis=0))
