@@ -66,7 +66,7 @@ class JointConductance(TableResult):
     surfaces: int
     """Number of surfaces."""
     notes: tuple[str, ...]
-    """What limits the validity: warnings of the contacts."""
+    """What limits the validity: warnings of the contacts, the first of each kind."""
 
     def _state(self) -> dict[str, object]:
         return {
@@ -265,7 +265,7 @@ def joint_conductance(
         "kind": kind,
     }
     found = np.empty((len(shapes), loads.size, 3))
-    notes: dict[str, None] = {}
+    notes: dict[str, str] = {}  # of a kind, the first
     with lasting("joint", progress) as tell, heard():  # the result has the warnings
         for j, shape in enumerate(shapes):
             cells = _cells(shape, grid)
@@ -273,16 +273,16 @@ def joint_conductance(
             area = cells.size[0] * cells.size[1]
             for k, load in enumerate((loads * area).tolist()):
                 last = contact.solve(shape, load=load, hardness=hardness, initial=last)
-                one = last.conductance(**through)
+                one, report = last.conductance(**through), last.report
                 error = one.conductance * one.uncertainty / one.resistance
                 found[j, k] = one.conductance, error, corrected_area(last) / area
-                notes |= dict.fromkeys(one.notes)
+                notes = dict(zip(report.warning_kinds, report.warnings, strict=False)) | notes
                 if tell is not None:
                     tell((j * loads.size + k + 1) / found[..., 0].size)
     n, (mean, error, share) = len(shapes), found.mean(axis=0).T
     deviation = found[..., 0].std(axis=0, ddof=1) / math.sqrt(n) if n > 1 else None
-    mikic = _mikic(shapes, contact, loads, through)
-    return JointConductance(loads, mean, error, deviation, share, mikic, kind, n, tuple(notes))
+    columns = loads, mean, error, deviation, share, _mikic(shapes, contact, loads, through)
+    return JointConductance(*columns, kind, n, (*notes.values(),))
 
 
 def _cells(shape: core.Shape, grid: core.Grid | None) -> core.Grid:
