@@ -61,8 +61,7 @@ def test_the_scale_of_lengths_and_of_pressures() -> None:
     assert_close(same.conductance, JOINT.conductance, rtol=1e-9)
     assert_close(same.share, JOINT.share, rtol=1e-12)
     # Lengths three times as long divide it by three.
-    spacing = tuple(3 * step for step in SURFACE.spacing)
-    larger = nacre.HeightMap(3 * SURFACE.heights, spacing, periodic=(True, True))
+    larger = nacre.HeightMap(3 * SURFACE.heights, 3 * SURFACE.spacing[0], periodic=(True, True))
     third = design.joint_conductance(larger, STEEL, NICKEL, pressures=PRESSURES, **BARE)
     assert_close(3 * third.conductance, JOINT.conductance, rtol=1e-9)
     assert JOINT.mikic is not None
@@ -159,7 +158,7 @@ def test_a_hardness_and_a_film_lower_the_conductance_as_they_should() -> None:
 
 
 def test_current_is_conducted_alike() -> None:
-    numbers = {"conductivity": 4.6e6, "counter_conductivity": 9.0e6}
+    numbers: dict[str, Any] = {"conductivity": 4.6e6, "counter_conductivity": 9.0e6}
     joint = design.joint_conductance(
         SURFACE, STEEL, NICKEL, pressures=PRESSURES, kind="electrical", **numbers
     )
