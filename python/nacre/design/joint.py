@@ -249,7 +249,7 @@ def joint_conductance(
     ...     counter_conductivity=46.0,
     ... )
     >>> (joint.conductance / 1e6).round(2)
-    array([0.83, 1.46])
+    array([0.15, 0.27])
     """
     shapes = [surface] if isinstance(surface, core.Shape) else list(surface)
     if not shapes:
