@@ -301,7 +301,7 @@ def markup(surface: core.HeightMap) -> str:
 
         return plot.heights(surface)
 
-    grid = _grid(surface)
+    grid = map_grid(surface)
     points = " × ".join(map(str, surface.heights.shape))
     size = " × ".join(written(side, "m") for side in grid.size)
     repeats = [name for name, is_so in zip("xy", surface.periodic, strict=True) if is_so]
@@ -402,7 +402,7 @@ def load_curve(
     if grid is None:
         if not isinstance(shape, core.HeightMap):
             raise ValueError("grid must be given for a shape that is not a map")
-        grid = _grid(shape)
+        grid = map_grid(shape)
     plan_options = {
         name: keywords.pop(name) for name in ("coefficients", "threads") if name in keywords
     }
@@ -602,7 +602,7 @@ def spectrum(solution: Solution | core.HeightMap) -> xarray.Dataset:
         If the grid is one of strips, or the shape cannot touch everywhere.
     """
     if isinstance(solution, core.HeightMap):
-        return _spectra({"surface": solution.heights}, _grid(solution), {})
+        return _spectra({"surface": solution.heights}, map_grid(solution), {})
     grid, report = solution.report.grid, solution.report
     if not np.isfinite(solution.gap).all():
         raise ValueError("the shape must be able to touch everywhere for a spectrum")
@@ -635,7 +635,7 @@ def _spectra(
     return dataset
 
 
-def _grid(surface: core.HeightMap) -> core.Grid:
+def map_grid(surface: core.HeightMap) -> core.Grid:
     """Return the grid of a map."""
     shape = surface.heights.shape
     size = shape[0] * surface.spacing[0], shape[1] * surface.spacing[1]

@@ -221,8 +221,8 @@ def conductance_of(
             "at one temperature or voltage throughout"
         )
     both = [
-        _of_body("conductivity", conductivity, report.body, kind),
-        _of_body("counter_conductivity", counter_conductivity, report.counterbody, kind),
+        conductivities_of("conductivity", conductivity, report.body, kind),
+        conductivities_of("counter_conductivity", counter_conductivity, report.counterbody, kind),
     ]
     films = np.asarray(core.real("film", film) if np.ndim(film) == 0 else film, dtype=float)
     if films.ndim and films.shape != solution.grid.shape:
@@ -238,7 +238,7 @@ def conductance_of(
     return Conductance(resistance, uncertainty, flux, kind, solution.grid, notes)
 
 
-def _of_body(name: str, given: Conductivities, body: Any, kind: Kind) -> list[float]:
+def conductivities_of(name: str, given: Conductivities, body: Any, kind: Kind) -> list[float]:
     """Return the conductivities of the layers of a body and of its substrate, or one for all."""
     numbers: Any
     if isinstance(given, Mapping):

@@ -1,8 +1,8 @@
 """Studies that a designer of coatings and bearings asks for, on top of `nacre.sweep`.
 
-`optimise` has a module of its own. Each other function returns an `xarray.Dataset`, which
-`nacre.plot` draws. It passes on the other arguments of a solve, and `store`, `version`, `executor`,
-`retry` and `progress` of `nacre.sweep`.
+`optimise` and `joint_conductance` have modules of their own. Each other function returns an
+`xarray.Dataset`, which `nacre.plot` draws. It passes on the other arguments of a solve, and
+`store`, `version`, `executor`, `retry` and `progress` of `nacre.sweep`.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from nacre._tools.units import symbol
 from nacre.cards import Limits
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import Bonds
+from nacre.design.joint import JointConductance, joint_conductance
 from nacre.design.optimise import Optimum, optimise
 from nacre.studies import ARGUMENTS, sweep
 from nacre.studies.outputs import Output, check_direction
@@ -27,7 +28,16 @@ from nacre.studies.outputs import Output, check_direction
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Optimum", "coating_chart", "force_table", "load_curve", "optimise", "tilt_curve"]
+__all__ = [
+    "JointConductance",
+    "Optimum",
+    "coating_chart",
+    "force_table",
+    "joint_conductance",
+    "load_curve",
+    "optimise",
+    "tilt_curve",
+]
 __dir__ = __all__.copy
 
 Values = Sequence[float] | npt.NDArray[np.float64]

@@ -84,7 +84,7 @@ are still read, and older studies found again. Versions that do not know them re
 name."""
 ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
-LATE = ("nacre.types", "nacre.indent", "nacre.rough", "nacre.bearing")
+LATE = ("nacre.types", "nacre.indent", "nacre.rough", "nacre.bearing", "nacre.design")
 """Modules with results that ``import nacre`` does not import."""
 RESULTS: dict[str, Any] = {}
 """Classes of results by their names."""
