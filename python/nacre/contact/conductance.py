@@ -16,6 +16,7 @@ from nacre._tools.units import system
 from nacre.cards import materials
 from nacre.contact.arguments import layer_numbers
 from nacre.results import display
+from nacre.results.base import same
 from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import CELLS, Quantity, derived, frozen, quantity
 from nacre.results.rows import Row, remark
@@ -34,13 +35,36 @@ Conductivity = float | str
 Conductivities = Conductivity | Mapping[int | str, Conductivity] | Sequence[Conductivity]
 UNITS = {"thermal": ("K/W", "W/K", "W/m/K"), "electrical": ("Ω", "S", "S/m")}
 """SI units of resistance, conductance and conductivity."""
+
+
+def units_of(kind: str, *, line: bool = False, per_area: bool = False) -> dict[str, str]:
+    """Return the SI units of a conductance and of its keywords, by name.
+
+    >>> units_of("electrical", line=True)["resistance"]
+    'Ω m'
+    """
+    resistance, conductance, conductivity = UNITS[kind]
+    ohm = kind == "electrical"
+
+    def over(length: str) -> str:
+        return " ".join((resistance, length) if ohm else (length, resistance)).strip()
+
+    length = "m" if line else "m²" if per_area else ""
+    return {
+        **dict.fromkeys(("resistance", "uncertainty", "required_resistance"), over(length)),
+        "conductance": f"{conductance}/{length}".rstrip("/"),
+        **dict.fromkeys(("conductivity", "counter_conductivity"), conductivity),
+        "film": over("m²"),
+    }
+
+
 LEAST = {"thermal": 1e-3, "electrical": 1.0}
 """Conductivity below which a number is taken for a resistivity: evacuated powders have 1e-3
 W/(m K), and carbon, the poorest conductor of contacts, 1e4 S/m."""
 UNASKED = "No resistance is required."
 
 
-@frozen()
+@frozen(eq=False)
 class Conductance(TableResult):
     """Resistance of a contact to heat or current, from `Solution.conductance`.
 
@@ -66,12 +90,20 @@ class Conductance(TableResult):
     """Estimated error of the resistance by the size of the cells, in its unit."""
     flux: Field = quantity(dims=CELLS)
     """Share of the flux that passes each cell ``(nx, ny)``; their sum is 1."""
-    kind: Kind
+    conduction: Kind
     """Whether heat or current is conducted: "thermal" or "electrical"."""
     grid: core.Grid
     """Grid of the contact."""
     notes: tuple[str, ...]
     """What limits the validity: warnings of the contact."""
+    required_resistance: float | None = None
+    """Largest resistance, in the unit of `resistance`, which the verdict compares with."""
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all fields are equal."""
+        if not isinstance(other, Conductance):
+            return NotImplemented
+        return same(self._state(), other._state())
 
     @property
     @derived("W/K", label="conductance")
@@ -84,14 +116,11 @@ class Conductance(TableResult):
         """Whether the contact repeats, so that resistance and conductance are those of an area."""
         return any(self.grid.periodic)
 
+    def _si_units(self) -> dict[str, str]:
+        return units_of(self.conduction, line=self.grid.is_line, per_area=self.per_area)
+
     def _si(self, row: Quantity) -> str:
-        if row.is_field:
-            return ""
-        length = "m" if self.grid.is_line else "m²" if self.per_area else ""
-        if row.name == "conductance":
-            return f"{UNITS[self.kind][1]}/{length}".rstrip("/")
-        unit = UNITS[self.kind][0]
-        return f"{length} {unit}".strip() if self.kind == "thermal" else f"{unit} {length}".strip()
+        return self._si_units().get(row.name, "")
 
     def _rows(self) -> list[Row]:
         rows = super()._rows()
@@ -130,7 +159,7 @@ class Conductance(TableResult):
         Parameters
         ----------
         required_resistance : float, optional
-            Largest resistance, in the unit of `resistance`.
+            Largest resistance, in the unit of `resistance`; by default that of the result.
 
         Returns
         -------
@@ -143,7 +172,7 @@ class Conductance(TableResult):
             If it is not above 0 and finite.
         """
         unit = next(self._si(row) for row in self._QUANTITIES if row.name == "resistance")
-        limit = required_resistance
+        limit = self.required_resistance if required_resistance is None else required_resistance
         if limit is not None and not 0 < core.real("required_resistance", limit) < math.inf:
             raise ValueError(f"required_resistance must be above 0 and finite, got {limit!r}")
         value = display.number(self.resistance, unit, 3)

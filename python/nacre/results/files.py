@@ -202,7 +202,7 @@ def load(path: AnyPath) -> Any:
 
 def _arrays() -> list[str]:
     """Return the names of what files hold as arrays."""
-    kinds = map(result_class, ("Solution", "FrictionSolution"))
+    kinds = map(result_class, ("Solution", "FrictionSolution", "Conductance"))
     rows = [row for kind in kinds for row in kind._QUANTITIES if not row.follows]
     return ["packed", *(row.name for row in rows if len(row.dims) > 1 and row.dims[0] != "axis")]
 
