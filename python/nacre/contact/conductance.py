@@ -105,6 +105,10 @@ class Conductance(TableResult):
             return NotImplemented
         return same(self._state(), other._state())
 
+    def __post_init__(self) -> None:
+        """Raise a `ValueError` if the required resistance is not above 0 and finite."""
+        _check_required(self.required_resistance)
+
     @property
     @derived("W/K", label="conductance")
     def conductance(self) -> float:
@@ -173,8 +177,7 @@ class Conductance(TableResult):
         """
         unit = next(self._si(row) for row in self._QUANTITIES if row.name == "resistance")
         limit = self.required_resistance if required_resistance is None else required_resistance
-        if limit is not None and not 0 < core.real("required_resistance", limit) < math.inf:
-            raise ValueError(f"required_resistance must be above 0 and finite, got {limit!r}")
+        _check_required(limit)
         value = display.number(self.resistance, unit, 3)
         share = display.plus_minus(self.uncertainty, self.resistance)
         needed = "" if limit is None else f", {display.number(limit, unit, 3)} at most required"
@@ -211,6 +214,12 @@ class Conductance(TableResult):
         from nacre.plot.drawer import draw
 
         return draw(self._charts()[0], axes, (0.6, 0.45))
+
+
+def _check_required(limit: float | None) -> None:
+    """Raise a `ValueError` if a required resistance is not above 0 and finite."""
+    if limit is not None and not 0 < core.real("required_resistance", limit) < math.inf:
+        raise ValueError(f"required_resistance must be above 0 and finite, got {limit!r}")
 
 
 def conductance_of(
