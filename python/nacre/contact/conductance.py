@@ -87,7 +87,7 @@ class Conductance(TableResult):
     contact that repeats, times the area of a period, in m² K/W or Ω m².
     """
     uncertainty: float = quantity("K/W")
-    """Estimated error of the resistance by the size of the cells, in its unit."""
+    """Estimated error of the resistance by the size of the cells [K/W, Ω]."""
     flux: Field = quantity(dims=CELLS)
     """Share of the flux that passes each cell ``(nx, ny)``; their sum is 1."""
     conduction: Kind
