@@ -246,6 +246,8 @@ class System:
         """
         if self.name != "SI":
             dimension = WORK.get(dimension, dimension)
+        if "/" in self._names["W"]:  # which cannot be below a line itself
+            dimension = dimension.replace("/W", " s/N/m")
         terms = FACTORS.findall(dimension)
         name = "".join(f"{mark}{self._names.get(base, base)}{power}" for mark, base, power in terms)
         return _product(dimension, self._sizes), name

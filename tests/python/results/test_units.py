@@ -50,7 +50,7 @@ def one(factor: str) -> tuple[float, Counter[str]]:
 
 
 def read(unit: str) -> tuple[float, Counter[str]]:
-    """Return size and dimensions of a product or quotient of units; those below have a line each."""
+    """Return size and dimensions of a product or quotient of units."""
     above, _, below = unit.partition("/")
     size, dimensions = 1.0, Counter[str]()
     for factor in above.split():
