@@ -137,6 +137,7 @@ LISTED: dict[str, Callable[[], Any]] = {
         LINE.solve(ROD, load=1e4), friction=[0.0, 0.1], depths=[0.0, 1e-5]
     ),
     "unloading": unloaded,
+    "conductance": lambda: LINED.conductance(conductivity=[9.0, 46.0], counter_conductivity=20.0),
     "tried": lambda: Tried((1.0, -2.0), 1e-9 / 3, 3, "x", ("a", "b"), False),
 }
 WEAR: dict[str, Callable[[], nacre.types.WearHistory]] = {

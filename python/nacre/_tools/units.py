@@ -81,9 +81,11 @@ def _product(unit: str, sizes: Mapping[str, float]) -> float:
 
 
 DEFINED = {
-    **dict.fromkeys(("kg", "m", "s", "rad"), (1.0, "")),
+    **dict.fromkeys(("kg", "m", "s", "rad", "K", "A"), (1.0, "")),
     **{"g": (1e-3, "kg"), "t": (1e3, "kg"), "N": (1.0, "kg m/s²"), "J": (1.0, "N m")},
     **{"Pa": (1.0, "N/m²"), "bar": (1e5, "Pa"), "Nm": (1.0, "N m"), "Nmm": (1e-3, "N m")},
+    **{"W": (1.0, "J/s"), "V": (1.0, "W/A"), "S": (1.0, "A/V")},
+    **dict.fromkeys(("Ω", "ohm"), (1.0, "V/A")),
     **{"Pas": (1.0, "Pa s"), "P": (0.1, "Pa s"), "St": (1e-4, "m²/s"), "kgf": (9.80665, "N")},
     **{"lbf": (BASES["lbf"][1], "N"), "in": (BASES["in"][1], "m"), "psi": (1.0, "lbf/in²")},
     **{"ksi": (1e3, "psi"), "ft": (12.0, "in"), "min": (60.0, "s"), "h": (60.0, "min")},
@@ -93,9 +95,12 @@ DEFINED = {
     **dict.fromkeys(("rpm", "U/min", "r/min", "rev/min"), (2 * math.pi / 60, "rad/s")),
     **dict.fromkeys(("1/min", "min-1"), (2 * math.pi / 60, "rad/s")),
 }
-"""Units in which people type numbers, by name: each is a multiple of another unit, but for four
+"""Units in which people type numbers, by name: each is a multiple of another unit, but for six
 base units. The inverse of a minute is a speed of rotation, since everybody counts turns in it."""
-PREFIXED = ("g", "m", "s", "N", "Pa", "J", "rad", "bar", "Nm", "Pas", "P", "St", "Hz")
+PREFIXED = (
+    *("g", "m", "s", "N", "Pa", "J", "rad", "bar", "Nm", "Pas", "P", "St", "Hz"),
+    *("W", "A", "V", "S", "Ω", "ohm"),
+)
 """Units that may have a prefix."""
 TYPED = re.compile(r"([+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d{1,3}+)?+)\s*((?!1$)\S.*)")
 """A number and its unit."""
@@ -105,14 +110,14 @@ FACTOR = re.compile(r"(^| ?/ ?| )([^\W\d]+|[°′']|(?<!.)1(?= ?/))(-?\d)?")
 """A unit in a product or a quotient as it is typed: the sign before it, its name and its power. A
 number 1 is above the line alone."""
 SPELLINGS = str.maketrans(
-    {"·": " ", "⋅": " ", "*": " ", "^": "", "μ": "µ"}
+    {"·": " ", "⋅": " ", "*": " ", "^": "", "μ": "µ", "\N{OHM SIGN}": "Ω"}
     | {sign: str(power) for sign, power in zip("²³⁴¹⁻", (2, 3, 4, 1, "-"), strict=True)}
 )
 
 
 @lru_cache
 def _measure(unit: str) -> tuple[Fraction, dict[str, int]] | None:
-    """Return the exact size in SI, and the powers of kg, m, s and rad, of a unit as it is typed.
+    """Return the exact size in SI, and the powers of base units, of a unit as it is typed.
 
     It is None of a unit that is not known, or that can be read in two ways: "N/m m", "m m".
     """
@@ -241,6 +246,8 @@ class System:
         """
         if self.name != "SI":
             dimension = WORK.get(dimension, dimension)
+        if "/" in self._names["W"]:  # which cannot be below a line itself
+            dimension = dimension.replace("/W", " s/N/m")
         terms = FACTORS.findall(dimension)
         name = "".join(f"{mark}{self._names.get(base, base)}{power}" for mark, base, power in terms)
         return _product(dimension, self._sizes), name

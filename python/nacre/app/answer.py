@@ -230,7 +230,11 @@ def finer(case: Case) -> Case:
         grid[key] = (FINER * np.array(grid[key])).tolist()
     if case.kind == "bearing" and "cells" in data["bearing"]["solve"]:
         data["bearing"]["solve"]["cells"] = [FINER * n for n in data["bearing"]["solve"]["cells"]]
-    elif case.kind == "contact" and case.friction is None and "periodic" not in grid:
+    elif (
+        case.kind == "contact"
+        and case.friction is None
+        and {"periodic", "conductance"}.isdisjoint({*grid, *data})
+    ):
         data["stress"] = {"refine": LARGEST_ERROR} | data.get("stress", {})
     elif case.kind in ("contact", "wear") and not grid:
         data["solve"]["max_cells"] = FINER**2 * data["solve"].get("max_cells", FEWEST_CELLS)
@@ -268,6 +272,7 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
         verdict, summary = worst_of(map(verdict_on, results.values())), results.get("stress")
         warnings = [*warnings, *(text for one in results.values() for text in one.warnings)]
         rows += [] if summary is None else _extremes(summary)
+        rows += results["conductance"]._rows() if "conductance" in results else []
         if of_bare is not None and summary is not None:
             sliding = {k: v for k, v in options.items() if k not in ("body", "residual")}
             beside += _extremes(of_bare.summary(**sliding, progress=wanted))

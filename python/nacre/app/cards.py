@@ -24,6 +24,7 @@ from nacre.app.fields import LIMITS, Field, FieldError, entry_at, field_of, keys
 from nacre.case import Case, CaseError, templates
 from nacre.case.results import files_of
 from nacre.case.schema import material_of
+from nacre.case.typed import with_numbers
 
 Data = dict[str, Any]
 
@@ -46,6 +47,7 @@ BONDS = ("shear", "tension")
 """Limits of interfaces."""
 REQUIRED = {
     "wear": ("wear.required_distance",),
+    "conductance": ("conductance.required_resistance",),
     "bearing": ("bearing.life.required_life", "bearing.solve.static_safety"),
 }
 """What has to be reached, by the table of the case."""
@@ -215,7 +217,7 @@ def _texts() -> dict[str, Any]:
 def _card(name: str, entry: Data, texts: Mapping[str, Any]) -> Card:
     """Return the card of a template, with other entries and without some."""
     texts = {**texts, "shown": entry.get("shown", {})}
-    data = tomllib.loads(templates.texts()[name])
+    data = with_numbers(tomllib.loads(templates.texts()[name]))
     for path in entry.get("without", ()):
         data = _with_entry(data, path, None)
     for path, value in entry.get("changes", {}).items():
@@ -253,7 +255,7 @@ def own_card(path: AnyPath) -> Card:
         data["shape"] = {"kind": "sphere", "radius": 1.0}  # whose place the measured one takes
     elif case.kind in ("contact", "wear") and "grid" not in data:
         data["solve"] = {"max_cells": MOST["cells"]} | data["solve"]
-    if case.kind == "contact" and "fatigue" not in data:
+    if case.kind == "contact" and data.keys().isdisjoint({"fatigue", "conductance"}):
         data.setdefault("stress", {})  # which the page shows
     check_size(data)
     fields = _other_fields(data, measured.tables.keys() | STATIONS, _texts(), has_units=False)

@@ -16,14 +16,14 @@ import numpy as np
 from nacre._tools.units import System, number_in
 from nacre.case.reference import UNIT, options, place
 from nacre.case.typed import si_unit
-from nacre.results.parameters import quantity_of
+from nacre.results.parameters import BY_LAYER, quantity_of
 
 SLOPE = "′"
 """Unit of tilts, which are slopes in a case: the tangents of angles."""
 LIMITS = {"stress": ("yield_stress", "strength"), "fatigue": ("shear_yield",)}
 """Limits of materials, which may be empty, by the tables of a case that take them."""
 
-EMPTY = {"required_distance", "required_life", "static_safety"}
+EMPTY = {"required_distance", "required_life", "required_resistance", "static_safety"}
 EMPTY |= {key for keys in LIMITS.values() for key in keys}
 """Keys that may be empty, besides those of bonds."""
 
@@ -199,7 +199,7 @@ def label_of(keys: Sequence[Any], quantity: str, labels: Mapping[str, str]) -> s
     elif last in ("x", "y", "z"):
         words.append(f"{'about' if quantity in ('moment', 'tilt') else 'along'} {last}")
     elif last != quantity:
-        words.append(f"of {last}" if quantity == "rate" else str(last).replace("_", " "))
+        words.append(f"of {last}" if quantity in BY_LAYER else str(last).replace("_", " "))
     if keys[0] == "materials":
         words.append(f"of {keys[1]}")
     words += [f"of the {key} bearing" for key in keys if key in ("first", "second")]

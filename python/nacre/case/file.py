@@ -181,6 +181,14 @@ class Case:
             raise CaseError(f"{self.name}: {error}") from error
         return self._without_friction(keywords)
 
+    def conductance(self) -> dict[str, Any] | None:
+        """Return the arguments of `Solution.conductance`, or None without a table for it."""
+        table = self._table
+        try:
+            return table.conductors() if isinstance(table, CaseTable) else None
+        except WrongValue as error:
+            raise CaseError(f"{self.name}: {error}") from error
+
     def _without_friction(self, keywords: dict[str, object]) -> dict[str, object]:
         """Return keywords without those of friction where the tractions are known."""
         left = () if self.friction is None else ("friction", "direction")
@@ -261,6 +269,9 @@ class Case:
             arguments["stress"] = stress
         if (fatigue := self.fatigue()) is not None:
             arguments["fatigue"] = fatigue
+        if (conductance := self.conductance()) is not None:
+            conductance.pop("required_resistance", None)
+            arguments["conductance"] = conductance
         return arguments
 
     def _inside(self, key: str, store: str) -> Path:

@@ -148,6 +148,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[roll.creepage]` and `[roll.force]`", definitions["Rolling"]
     yield "`[wear]`", definitions["Wear"]
     yield "`[stress]`", definitions["Stress"]
+    yield "`[conductance]`", definitions["Conductance"]
     yield "`[fatigue]`", definitions["Fatigue"]
     for option in tables(definitions["Fatigue"]["properties"]["criteria"]["items"]):
         yield f'`[[fatigue.criteria]]` with `kind = "{kind_of(option)}"`', option
@@ -177,7 +178,7 @@ def text() -> str:
         summary = " ".join(description.split("\n\n")[0].split()).replace("``", "`")
         lines += ["", f"## {title}", "", *textwrap.wrap(summary, WIDTH), ""]
         required = table.get("required", [])
-        keys = [(name, node) for name, node in table["properties"].items() if name != "kind"]
+        keys = [(name, node) for name, node in table["properties"].items() if "const" not in node]
         # Keys that must be given come first, and the common ones of shapes last.
         for name, node in sorted(keys, key=lambda key: (key[0] not in required, key[0] == "shift")):
             item = _key(name, node, name in required)

@@ -58,7 +58,7 @@ def _contact(case: Case, arguments: Options, options: Options) -> Results:
 
 
 def of_last(case: Case, last: Any, options: Options, plan: StressPlan | None = None) -> Results:
-    """Return the stresses and the fatigue of a contact that the case asks for.
+    """Return the stresses, the fatigue and the conductance of a contact that the case asks for.
 
     A plan of the stresses, which cells of the grid alone have, saves the time to make one.
     """
@@ -73,6 +73,11 @@ def of_last(case: Case, last: Any, options: Options, plan: StressPlan | None = N
     if (keywords := case.fatigue()) is not None:
         with naming(case, "fatigue"):
             results["fatigue"] = nacre.fatigue.assess(last, **keywords, **options)
+    if (keywords := case.conductance()) is not None:
+        with naming(case, "conductance"):
+            required = keywords.pop("required_resistance", None)
+            conductance = last._normal.conductance(**keywords)
+            results["conductance"] = replace(conductance, required_resistance=required)
     return results
 
 
@@ -139,6 +144,7 @@ def report_of(case: Case, results: Results, text: str, name: str, files: report.
     Its files are those of `files_of`.
     """
     tables = {"stress": case.stress(), "fatigue": case.fatigue()}
+    tables["conductance"] = case.conductance()
     if tables["stress"] is not None:
         cards_or_numbers = tables["stress"].get("yield_stress")
         tables["stress"]["yield_stress"] = numbers_of(cards_or_numbers, "yield_stress")
@@ -150,6 +156,8 @@ def report_of(case: Case, results: Results, text: str, name: str, files: report.
         for words, text in [("material", card.title), *card.numbers_in_words]
     ]
     units = keyword_units(nacre.Solution.stress_summary, nacre.fatigue.assess, Criterion)
+    if (conductance := results.get("conductance")) is not None:
+        units |= conductance._si_units()
     rows = [
         remark("units of the case", case.units),
         *files,

@@ -178,8 +178,7 @@ def _solve(
     summaries = {name: result for name, result in results.items() if result is not outcome}
     steps = outcome if isinstance(outcome, nacre.types.History) else None
     if as_json:
-        extremes = {name: result.to_dict() for name, result in summaries.items()}
-        extremes |= _verdicts(summaries)
+        extremes = {k: _numbers_of(v) for k, v in summaries.items()} | _verdicts(summaries)
         history = {"steps": [_friction_numbers(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
@@ -204,7 +203,7 @@ def _solve_wear(
     summaries = {name: result for name, result in results.items() if result is not history}
     if as_json:
         numbers = _wear_numbers(history) | {"units": case_file.units}
-        extremes = {name: result.to_dict() for name, result in summaries.items()}
+        extremes = {k: _numbers_of(v) for k, v in summaries.items()}
         print(json.dumps(_plain(numbers | extremes | _verdicts(results)), indent=2))
     else:
         print(history, *summaries.values(), sep="\n\n")
@@ -298,6 +297,15 @@ def _friction_numbers(solution: nacre.types.FrictionSolution) -> dict[str, objec
             name: value for name, value in solution.report.to_dict().items() if name != "kind"
         }
     }
+
+
+def _numbers_of(result: Any) -> dict[str, object]:
+    """Return the state of what is computed of a contact, without fields; of a conductance both."""
+    state = {k: v for k, v in result.to_dict().items() if not isinstance(v, np.ndarray)}
+    if isinstance(result, nacre.types.Conductance):
+        del state["grid"]  # that of the contact
+        state["conductance"] = result.conductance
+    return state
 
 
 def _wear_numbers(history: nacre.types.WearHistory) -> dict[str, object]:

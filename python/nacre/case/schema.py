@@ -32,12 +32,13 @@ from nacre.case.tables import (
     parameter_texts,
     with_words,
 )
-from nacre.case.wear import Wear, rates
+from nacre.case.wear import Wear, numbers_by_layer
 from nacre.studies.outputs import OUTPUTS
 
 CONSTANTS = parameter_texts(nacre.Elastic)
 SOLVE = parameter_texts(nacre.solve)
 FATIGUE = parameter_texts(nacre.fatigue.assess)
+CONDUCTANCE = parameter_texts(nacre.Solution.conductance)
 
 
 class Material(Table):
@@ -188,6 +189,31 @@ class OfBody(Table):
 @from_signature(nacre.Solution.stress_summary, SHARED, parameter_texts(nacre.Solution.stress))
 class Stress(OfBody):
     """The stresses that are printed and kept, as `Solution.stress_summary` has them."""
+
+
+AnyConductivity = Annotated[
+    float | dict[str, float],
+    with_words('a number or inf, or a table of them by layer or material and "substrate"'),
+]
+CONDUCTIVITY = (
+    "Conductivity of the {} [W/(m K), S/m]: one number, or one of each layer, by its number, its "
+    'name or that of its material, and of the "substrate"; inf if one temperature or voltage holds '
+    "throughout."
+)
+
+
+class Conductance(Table):
+    """Resistance of the contact to heat or current, as `Solution.conductance` has it."""
+
+    conductivity: AnyConductivity = Field(description=CONDUCTIVITY.format("body"))
+    counter_conductivity: AnyConductivity = Field(
+        description=CONDUCTIVITY.format("counterbody, or of the rigid shape")
+    )
+    film: Number = Field(0.0, description="Resistance per area of a film [m² K/W, Ω m²].")
+    kind: Literal["thermal", "electrical"] = Field("thermal", description=CONDUCTANCE["kind"])
+    required_resistance: Number | None = Field(
+        None, description="Largest resistance [K/W, Ω], for the verdict."
+    )
 
 
 def _criterion(kind: str, maker: Any) -> type[Any]:
@@ -415,6 +441,9 @@ class CaseTable(Bodies):
     fatigue: Fatigue | None = Field(
         None, description="Shakedown and fatigue in steady rolling; the table may be empty."
     )
+    conductance: Conductance | None = Field(
+        None, description="Resistance of the contact to heat or current."
+    )
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments of `nacre.solve`; a `ValueError` begins with the key at fault."""
@@ -446,12 +475,24 @@ class CaseTable(Bodies):
         """Return the arguments of `nacre.wear` beside those of `nacre.solve`."""
         assert self.wear is not None
         keywords = self.wear.keywords()
-        for key, body in (("rate", self.body), ("counter_rate", self.counterbody)):
-            if key in keywords:
-                with at(f"wear.{key}"):
-                    keywords[key] = rates(keywords[key], self._names(body))
+        self._number_layers("wear", "rate", keywords)
         motions = (("slide", self.slide), ("roll", self.roll))
         return keywords | {name: table.keywords() for name, table in motions if table is not None}
+
+    def conductors(self) -> dict[str, Any] | None:
+        """Return the arguments of `Solution.conductance`, or None without a table for it."""
+        if self.conductance is None:
+            return None
+        keywords = self.conductance.keywords()
+        self._number_layers("conductance", "conductivity", keywords)
+        return keywords
+
+    def _number_layers(self, table: str, key: str, keywords: dict[str, Any]) -> None:
+        """Replace the names of layers in a keyword of each body by their numbers."""
+        for name, body in ((key, self.body), (f"counter_{key}", self.counterbody)):
+            if name in keywords:
+                with at(f"{table}.{name}"):
+                    keywords[name] = numbers_by_layer(keywords[name], self._names(body))
 
     @staticmethod
     def _names(body: Body | None) -> list[list[str]]:

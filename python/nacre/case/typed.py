@@ -11,6 +11,7 @@ from nacre._tools.units import System, number_in
 from nacre.case.reference import Place, options, place
 from nacre.case.schema import at
 from nacre.case.tables import unit_of
+from nacre.contact.conductance import units_of
 
 Keys = tuple[int | str, ...]
 
@@ -20,6 +21,8 @@ FIXED = ("const", "enum")
 """Keys of a schema that allow certain texts alone."""
 STUDY = ("sweep", "parameters")
 """Place of the values of a study, whose units are those of the keys that they change."""
+TWICE = [False, False]
+"""Axes along which no grid repeats."""
 DISTANCES = ("steps", "required_distance")
 """Keys of wear that are lengths only where its distance is one."""
 
@@ -80,6 +83,11 @@ def si_unit(data: Mapping[str, Any], keys: Keys) -> str:
         return "m" if "sliding" in data["wear"] else ""
     grid = data.get("grid")
     line = isinstance(grid, Mapping) and "width" in grid
+    if keys[0] == "conductance":
+        per_area = isinstance(grid, Mapping) and grid.get("periodic", TWICE) != TWICE
+        is_electrical = data["conductance"].get("kind") == "electrical"
+        kind = "electrical" if is_electrical else "thermal"
+        return units_of(kind, line=line, per_area=per_area)[str(keys[1])]
     nodes = [place(data, inner).node for inner in (keys, keys[:-1])]
     return next((unit for node in nodes if (unit := unit_of(node, line))), "")
 

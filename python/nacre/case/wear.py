@@ -56,20 +56,22 @@ class Wear(Table):
         return arguments
 
 
-def rates(rate: float | Mapping[str, float], names: Sequence[Sequence[str]]) -> Any:
-    """Return a rate as `nacre.wear` takes it, by the numbers of layers.
+def numbers_by_layer(given: float | Mapping[str, float], names: Sequence[Sequence[str]]) -> Any:
+    """Return a number or numbers by layer as calls take them, by the numbers of layers.
 
     Each part of the body, from the surface down, has its names, the first of which is its key.
     A `ValueError` names the keys that there may be.
     """
-    if not isinstance(rate, Mapping):
-        return rate
+    if not isinstance(given, Mapping):
+        return given
     if not names:
         raise ValueError("must be a number, as the shape is rigid without a counterbody")
-    rate = {str(key): value for key, value in by_layer(rate).items()}
+    values = {str(key): value for key, value in by_layer(given).items()}
     known = list(dict.fromkeys(name for aliases in names for name in aliases))
-    if unknown := [key for key in rate if key not in known]:
+    if unknown := [key for key in values if key not in known]:
         raise ValueError(f"must have keys among {', '.join(known)}, got {unknown[0]!r}")
-    own_names = [next((name for name in aliases if name in rate), None) for aliases in names]
+    own_names = [next((name for name in aliases if name in values), None) for aliases in names]
     keys = [int(aliases[0]) if aliases[0].isdigit() else aliases[0] for aliases in names]
-    return {key: rate[name] for key, name in zip(keys, own_names, strict=True) if name is not None}
+    return {
+        key: values[name] for key, name in zip(keys, own_names, strict=True) if name is not None
+    }

@@ -35,6 +35,29 @@ Conductivity = float | str
 Conductivities = Conductivity | Mapping[int | str, Conductivity] | Sequence[Conductivity]
 UNITS = {"thermal": ("K/W", "W/K", "W/m/K"), "electrical": ("Ω", "S", "S/m")}
 """SI units of resistance, conductance and conductivity."""
+
+
+def units_of(kind: str, *, line: bool = False, per_area: bool = False) -> dict[str, str]:
+    """Return the SI units of a conductance and of its keywords, by name.
+
+    >>> units_of("electrical", line=True)["resistance"]
+    'Ω m'
+    """
+    resistance, conductance, conductivity = UNITS[kind]
+    ohm = kind == "electrical"
+
+    def over(length: str) -> str:
+        return " ".join((resistance, length) if ohm else (length, resistance)).strip()
+
+    length = "m" if line else "m²" if per_area else ""
+    return {
+        **dict.fromkeys(("resistance", "uncertainty", "required_resistance"), over(length)),
+        "conductance": f"{conductance}/{length}".rstrip("/"),
+        **dict.fromkeys(("conductivity", "counter_conductivity"), conductivity),
+        "film": over("m²"),
+    }
+
+
 LEAST = {"thermal": 1e-3, "electrical": 1.0}
 """Conductivity below which a number is taken for a resistivity: evacuated powders have 1e-3
 W/(m K), and carbon, the poorest conductor of contacts, 1e4 S/m."""
@@ -64,7 +87,7 @@ class Conductance(TableResult):
     contact that repeats, times the area of a period, in m² K/W or Ω m².
     """
     uncertainty: float = quantity("K/W")
-    """Estimated error of the resistance by the size of the cells, in its unit."""
+    """Estimated error of the resistance by the size of the cells [K/W, Ω]."""
     flux: Field = quantity(dims=CELLS)
     """Share of the flux that passes each cell ``(nx, ny)``; their sum is 1."""
     conduction: Kind
@@ -73,6 +96,12 @@ class Conductance(TableResult):
     """Grid of the contact."""
     notes: tuple[str, ...]
     """What limits the validity: warnings of the contact."""
+    required_resistance: float | None = None
+    """Largest resistance, in the unit of `resistance`, which the verdict compares with."""
+
+    def __post_init__(self) -> None:
+        """Raise a `ValueError` if the required resistance is not above 0 and finite."""
+        _check_required(self.required_resistance)
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -100,18 +129,11 @@ class Conductance(TableResult):
         """Whether the contact repeats, so that resistance and conductance are those of an area."""
         return any(self.grid.periodic)
 
+    def _si_units(self) -> dict[str, str]:
+        return units_of(self.conduction, line=self.grid.is_line, per_area=self.per_area)
+
     def _si(self, row: Quantity) -> str:
-        if row.is_field:
-            return ""
-        length = "m" if self.grid.is_line else "m²" if self.per_area else ""
-        if row.name == "conductance":
-            return f"{UNITS[self.conduction][1]}/{length}".rstrip("/")
-        unit = UNITS[self.conduction][0]
-        return (
-            f"{length} {unit}".strip()
-            if self.conduction == "thermal"
-            else f"{unit} {length}".strip()
-        )
+        return self._si_units().get(row.name, "")
 
     def _rows(self) -> list[Row]:
         rows = super()._rows()
@@ -150,7 +172,7 @@ class Conductance(TableResult):
         Parameters
         ----------
         required_resistance : float, optional
-            Largest resistance, in the unit of `resistance`.
+            Largest resistance, in the unit of `resistance`; by default that of the result.
 
         Returns
         -------
@@ -163,9 +185,8 @@ class Conductance(TableResult):
             If it is not above 0 and finite.
         """
         unit = next(self._si(row) for row in self._QUANTITIES if row.name == "resistance")
-        limit = required_resistance
-        if limit is not None and not 0 < core.real("required_resistance", limit) < math.inf:
-            raise ValueError(f"required_resistance must be above 0 and finite, got {limit!r}")
+        limit = self.required_resistance if required_resistance is None else required_resistance
+        _check_required(limit)
         value = display.number(self.resistance, unit, 3)
         share = display.plus_minus(self.uncertainty, self.resistance)
         needed = "" if limit is None else f", {display.number(limit, unit, 3)} at most required"
@@ -202,6 +223,12 @@ class Conductance(TableResult):
         from nacre.plot.drawer import draw
 
         return draw(self._charts()[0], axes, (0.6, 0.45))
+
+
+def _check_required(limit: float | None) -> None:
+    """Raise a `ValueError` if a required resistance is not above 0 and finite."""
+    if limit is not None and not 0 < core.real("required_resistance", limit) < math.inf:
+        raise ValueError(f"required_resistance must be above 0 and finite, got {limit!r}")
 
 
 def conductance_of(

@@ -140,6 +140,10 @@ def _fitted(kind: object, value: object) -> object:
             return tuple(map(_fitted, kinds, value))
     if origin is dict and isinstance(value, dict):
         return {_fitted(types[0], key): _fitted(types[1], item) for key, item in value.items()}
+    if origin is np.ndarray and isinstance(value, list | np.ndarray):
+        return np.asarray(value, dtype=float)
+    if kind is core.Grid and type(grid := values.decode(value)) is core.Grid:
+        return grid
     if kind is float and type(value) is int:
         return float(value)
     if kind in (bool, int, float, str) and type(value) is kind:

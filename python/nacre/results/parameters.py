@@ -27,7 +27,7 @@ VALUES = _units_of_values()
 """SI units of the arguments of values, by name."""
 COMPONENTS = ("x", "y", "z", "along", "across", "inner", "outer")
 """Keys of the components of a quantity."""
-BY_LAYER = ("rate", "counter_rate", "residual")
+BY_LAYER = ("rate", "counter_rate", "residual", "conductivity", "counter_conductivity")
 """Quantities that may have a number for each layer, by its name."""
 
 

@@ -232,8 +232,10 @@ class TableResult(Shown, Warned, Result, is_base=True):
             table = [(row, self._si(row)) for row in self._known]
             variables = {row.name: (row.dims, np.asarray(row.of(self))) for row in self._known}
             state = self.to_dict()
-            files.take_arrays(state, self._known)
-            return files.dataset(self._TITLE, table, variables, {}, state)
+            files.take_arrays(state, self._QUANTITIES)
+            grid = getattr(self, "grid", None)
+            places = {} if grid is None else {"x": grid.x, "y": grid.y}
+            return files.dataset(self._TITLE, table, variables, places, state)
 
     def _file_rows(self) -> Iterable[Iterable[object]]:
         cells: list[tuple[str, object]] = []

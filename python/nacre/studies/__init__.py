@@ -6,7 +6,7 @@ import inspect
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from contextlib import suppress
 from difflib import get_close_matches
@@ -31,6 +31,7 @@ from nacre.results.verdict import verdict_on, worst_of
 from nacre.studies.dataset import assemble, failure_lines, layout
 from nacre.studies.identity import Identity, identity_of, key_of
 from nacre.studies.outputs import (
+    CONDUCTANCES,
     FATIGUES,
     MARGINS,
     STRESSES,
@@ -42,6 +43,7 @@ from nacre.studies.outputs import (
     outputs_by_name,
     plain,
     rolls,
+    with_conductance,
 )
 
 if TYPE_CHECKING:
@@ -62,7 +64,14 @@ NOTES = frozenset(("progress", "check"))
 """Keywords of what a solve says, which studies say themselves."""
 STRESS = keywords_of(Solution.stress_summary) - {*NOTES, "threads"}
 FATIGUE = keywords_of(assess) - {*NOTES, "threads", "depths"}
-"""Keywords of stresses and fatigue that studies take."""
+CONDUCTANCE = keywords_of(Solution.conductance)
+"""Keywords of stresses, fatigue and conductance that studies take."""
+OPTIONS: dict[str, tuple[str, Collection[str], Iterable[str]]] = {
+    "stress": ("stress_summary", STRESS, STRESSES),
+    "fatigue": ("assess", FATIGUE, (*FATIGUES, *MARGINS)),
+    "conductance": ("Solution.conductance", CONDUCTANCE, CONDUCTANCES),
+}
+"""Function, keywords and outputs of each mapping of arguments for outputs."""
 UNCOMPARED = (
     "outputs use what cannot be compared with an earlier run: {}; all cases are solved again. Give "
     "version=..., and change it whenever the outputs change"
@@ -81,6 +90,7 @@ def sweep(
     outputs: Sequence[Output] | Mapping[str, Output] | None = None,
     stress: Mapping[str, object] | None = None,
     fatigue: Mapping[str, object] | None = None,
+    conductance: Mapping[str, object] | None = None,
     store: str | os.PathLike[str] | None = None,
     version: str | int | None = None,
     executor: Executor | None = None,
@@ -122,6 +132,7 @@ def sweep(
         ``"fatigue_safety_factor"``, NaN without a yield stress or criteria. With friction,
         attributes of `FrictionSolution` are outputs, too: ``"force"``, ``"torque"``, ``"shift"``,
         ``"twist"``, ``"creepage"``, ``"dissipated"``.
+        Outputs of `conductance` are ``"resistance"`` and ``"conductance"``, with wear at the end.
         Outputs of wear are ``"life"``, the distance or the number of cycles or passes after which
         the first layer is through, NaN where none is until the end; ``"worn_volume"``, of both
         bodies together; and ``"deepest"``, ``"peak_pressure"``, ``"contact_area"``,
@@ -138,6 +149,9 @@ def sweep(
     fatigue : mapping, optional
         Arguments of `nacre.fatigue.assess` for the outputs of fatigue: ``criteria``,
         ``shear_yield``, ``friction``, ``direction``, ``residual``, ``body``, ``x``, ``rule``.
+    conductance : mapping, optional
+        Arguments of `Solution.conductance` for its outputs: ``conductivity``,
+        ``counter_conductivity``, ``film``, ``kind``.
     store : path, optional
         File, ``.nc``, for the finished Dataset: a new one, or a study that is continued and
         replaced. Finished cases are kept beside it at once, in a ``.journal``. A case is solved
@@ -165,10 +179,10 @@ def sweep(
         Outputs with the parameters as coordinates. Where a case failed they are NaN, and ``error``
         holds the reason; ``warnings`` holds the warnings of each solve. With limits, ``verdict`` is
         the level of each case, as `Verdict.level`, "" where it failed. Peak pressure, approach and
-        load, peak and edge pressure of bearings, what `FrictionReport.discretisation` has, and
-        stresses and ranges of stress have their errors due to the size of the cells next to them,
-        such as ``peak_pressure_discretisation``, NaN where there is no estimate. The executor does
-        not change a bit.
+        load, resistance and conductance, peak and edge pressure of bearings, what
+        `FrictionReport.discretisation` has, and stresses and ranges of stress have their errors due
+        to the size of the cells next to them, such as ``peak_pressure_discretisation``, NaN where
+        there is no estimate. The executor does not change a bit.
 
     Warns
     -----
@@ -214,9 +228,9 @@ def sweep(
     if isinstance(case, Mapping):
         _check_paths(case, points)
     checked_outputs = _checked_outputs(case, points, parameters, outputs)
-    stress_options, fatigue_options = _options(checked_outputs, stress, fatigue)
+    options = _options(checked_outputs, stress=stress, fatigue=fatigue, conductance=conductance)
     version = _checked_version(version)
-    identity = identity_of(checked_outputs, stress_options, fatigue_options, version)
+    identity = identity_of(checked_outputs, options, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:
         warn(UNCOMPARED.format(", ".join(identity.unknown)))
@@ -227,7 +241,7 @@ def sweep(
             record = journal.records.get(key)
             return record is not None and not (again or (retry and "error" in record))
 
-        keys, tasks, failures = _cases(case, points, stress_options, identity, is_stored)
+        keys, tasks, failures = _cases(case, points, options["stress"], identity, is_stored)
         for record in failures.values():
             journal.add(record)
 
@@ -237,9 +251,7 @@ def sweep(
         arguments_of = {key: arguments for key, (arguments, _) in tasks.items()}
         stored = len(set(keys)) - len(tasks) - len(failures)
         with case_progress(progress, stored + len(tasks), stored) as advance:
-            for _ in _run(
-                arguments_of, checked_outputs, (stress_options, fatigue_options), executor, keep
-            ):
+            for _ in _run(arguments_of, checked_outputs, options, executor, keep):
                 advance()
         records = [journal.records[key] for key in keys]
         dataset = assemble(coordinates, records, checked_outputs, isinstance(case, Mapping))
@@ -283,19 +295,18 @@ def _checked_outputs(
 
 
 def _options(
-    outputs: Mapping[str, Output],
-    stress: Mapping[str, object] | None,
-    fatigue: Mapping[str, object] | None,
-) -> tuple[dict[str, object], dict[str, object]]:
-    """Return the arguments of stresses and of fatigue, of which each is used by some output."""
+    outputs: Mapping[str, Output], **given: Mapping[str, object] | None
+) -> dict[str, dict[str, object]]:
+    """Return the arguments of stresses, fatigue and conductance that are used by some output."""
     words = {output for output in outputs.values() if isinstance(output, str)}
-    stress_options = {**(stress or {})} if words & {*STRESSES} else {}
-    if unknown := set(stress_options) - STRESS:
-        raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
-    fatigue_options = {**(fatigue or {})} if words & {*FATIGUES, *MARGINS} else {}
-    if unknown := set(fatigue_options) - FATIGUE:
-        raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
-    return stress_options, fatigue_options
+    options = {}
+    for name, (function, keywords, names) in OPTIONS.items():
+        options[name] = {**(given[name] or {})} if words.intersection(names) else {}
+        if unknown := options[name].keys() - keywords:
+            raise TypeError(f"{name} must hold arguments of {function}, got {sorted(unknown)}")
+    if words.intersection(CONDUCTANCES) and not options["conductance"]:
+        raise TypeError(f"conductance must be given for the outputs {', '.join(CONDUCTANCES)}")
+    return options
 
 
 def _checked_version(version: object) -> str | int | None:
@@ -461,7 +472,7 @@ def _readable(point: Mapping[str, object]) -> dict[str, object]:
 def _run(
     tasks: Mapping[str, dict[str, object]],
     outputs: Mapping[str, Output],
-    options: tuple[Mapping[str, object], Mapping[str, object]],
+    options: Mapping[str, dict[str, object]],
     executor: Executor | None,
     keep: Callable[[str, Record], None],
 ) -> Iterator[None]:
@@ -489,7 +500,7 @@ def _run(
             for key, arguments in tasks.items():
                 if stopped.is_set():
                     return
-                task = arguments, dict(outputs), dict(options[0]), dict(options[1]), os.getpid()
+                task = arguments, dict(outputs), dict(options), os.getpid()
                 futures.append(pool.submit(_solve, *task))
                 futures[-1].add_done_callback(partial(end, key))
         except BaseException as error:  # from the executor: raised below
@@ -535,8 +546,7 @@ def default_threads() -> int:
 def _solve(
     arguments: dict[str, Any],
     outputs: dict[str, Output],
-    stress: dict[str, Any],
-    fatigue: dict[str, Any],
+    options: dict[str, dict[str, Any]],
     parent: int,
 ) -> Record:
     """Solve one case, in any process; return its outputs, or the reason why it failed."""
@@ -560,20 +570,21 @@ def _solve(
             notes |= _verdict([solved])
             return {"values": plain(solved, outputs, "bearing"), "bears": True} | notes
         if "rate" in arguments:
-            return _wear_outputs(wear(**arguments), outputs)
+            return _wear_outputs(wear(**arguments), outputs, options["conductance"])
         solution = _solution(arguments)
         normal = solution if isinstance(solution, Solution) else solution.normal
         summaries: list[Any] = []
         threads = {"threads": arguments["threads"]}
-        rate = partial(assess, solution, **threads, **fatigue)
-        values = output_values(solution, outputs, threads | stress, summaries, rate)
+        rate = partial(assess, solution, **threads, **options["fatigue"])
+        values = output_values(solution, outputs, threads | options["stress"], summaries, rate)
         unresolved = [text for summary in summaries for text in summary.warnings]
+        values, units = with_conductance(values, normal, outputs, options["conductance"])
         kinds = [warning["kind"] for warning in normal.report.to_dict()["warnings"]]
         record = {
             "values": values,
             "warnings": normal.report.warnings + unresolved,
             "kinds": kinds + ["unresolved stress"] * len(unresolved),
-        }
+        } | units
         rolling = not isinstance(solution, Solution) and rolls(solution)
         marks = {"line": normal.report.grid.is_line, "rolls": rolling}
         marked = {name: True for name, holds in marks.items() if holds}
@@ -602,18 +613,26 @@ def _marks(arguments: Mapping[str, Any]) -> Record:
     return {name: True for name, holds in marks.items() if holds}
 
 
-def _wear_outputs(history: WearHistory, outputs: dict[str, Output]) -> Record:
+def _wear_outputs(
+    history: WearHistory, outputs: dict[str, Output], conductance: dict[str, Any]
+) -> Record:
     """Return the outputs and the warnings of a history of wear."""
     marks = {
         "wears": True,
         "counts": history.unit != "m",
         "line": history.states[0].solution.grid.is_line,
     }
-    return {
-        "values": plain(history, outputs, "wear"),
-        "warnings": list(history.warnings),
-        "kinds": ["wear"] * len(history.warnings),
-    } | {name: True for name, holds in marks.items() if holds}
+    worn, values = history.states[-1].solution, plain(history, outputs, "wear")
+    values, units = with_conductance(values, worn, outputs, conductance)
+    return (
+        {
+            "values": values,
+            "warnings": list(history.warnings),
+            "kinds": ["wear"] * len(history.warnings),
+        }
+        | units
+        | {name: True for name, holds in marks.items() if holds}
+    )
 
 
 def _solution(arguments: dict[str, Any]) -> Solution | FrictionSolution:

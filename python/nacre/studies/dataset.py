@@ -134,6 +134,7 @@ def assemble(
     units = quantities.units(**kinds)
     if any(record.get("counts") for record in records):  # cycles or passes
         units = {name: unit for name, unit in units.items() if name not in ("life", "distance")}
+    units = units | next((record["units"] for record in records if "units" in record), {})
     axes_of_outputs = axes("bearing" if kinds["bears"] else "contact")
     for name, output in outputs.items():
         values = _values(records, name)
@@ -151,7 +152,7 @@ def assemble(
     for name, quantity in errors(outputs, names, _estimated_outputs(kinds)).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
-        cause = "length of the steps" if kinds["wears"] else "size of the cells"
+        cause = "length of the steps" if quantity == "life" else "size of the cells"
         words = f"error of {name.removesuffix(ERROR)} due to the {cause}, estimated"
         dataset[name].attrs = {"long_name": words}
         if quantity in units:

@@ -32,21 +32,19 @@ class Identity(NamedTuple):
 
 def identity_of(
     outputs: Mapping[str, object],
-    stress: Mapping[str, object],
-    fatigue: Mapping[str, object],
+    options: Mapping[str, Mapping[str, object]],
     version: str | int | None = None,
 ) -> Identity:
-    """Return the identity of outputs, of arguments of their stresses and fatigue, and a version."""
+    """Return the identity of outputs, of their options by name, and of a version."""
     unknown: list[str] = []
     output_parts = {
         name: output if isinstance(output, str) else _plain(output, name, unknown)
         for name, output in outputs.items()
     }
     data: dict[str, object] = {"outputs": output_parts}
-    if stress:
-        data["stress"] = _plain(dict(stress), "stress", unknown)
-    if fatigue:
-        data["fatigue"] = _plain(dict(fatigue), "fatigue", unknown)
+    for name, keywords in options.items():
+        if keywords:
+            data[name] = _plain(dict(keywords), name, unknown)
     if version is not None:
         data["version"] = version
     return Identity(data, unknown)

@@ -105,16 +105,18 @@ MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
     ),
 }
 """Outputs from `nacre.fatigue.assess`: each is the smallest of these values, or NaN."""
+CONDUCTANCES = ("resistance", "conductance")
+"""Outputs from `Solution.conductance`, of contacts and of the end of wear."""
 
 ESTIMATED = ("peak_pressure", "approach", "load", "contact_area")
 """Outputs whose errors due to the size of the cells are estimated."""
 ESTIMATED_OF_RINGS = ("peak_pressure", "edge_pressure")
 """The same of a bearing."""
-ESTIMATED_OF_WEAR = ("life",)
-"""Outputs of wear whose errors due to the length of the steps are estimated."""
+ESTIMATED_OF_WEAR = ("life", *CONDUCTANCES)
+"""Outputs of wear whose errors are estimated: due to the length of the steps, or to the cells."""
 OF_SLIDING = ("force", "torque", "shift", "twist", "creepage", "dissipated", "stick_share")
 """The same of sliding and of steady rolling; those of pairs are of their lengths."""
-OF_CONTACTS = (*ESTIMATED, *OF_SLIDING, *STRESSES, *FATIGUES)
+OF_CONTACTS = (*ESTIMATED, *OF_SLIDING, *STRESSES, *FATIGUES, *CONDUCTANCES)
 """The same of contacts."""
 NO_PART: Estimated = (np.nan, np.nan)
 """Extreme of a body that has no such part."""
@@ -142,7 +144,8 @@ def axes(kind: CaseKind) -> set[str]:
 def _names(kind: CaseKind) -> set[str]:
     """Return the names of all outputs of a kind of result."""
     others = (_of_friction(), STRESSES, FATIGUES, MARGINS) if kind == "contact" else ()
-    return set(rows_of(kind)).union(*others)
+    conducts = CONDUCTANCES if kind in ("contact", "wear") else ()
+    return set(rows_of(kind)).union(conducts, *others)
 
 
 def _choices(kind: CaseKind) -> str:
@@ -152,13 +155,14 @@ def _choices(kind: CaseKind) -> str:
             "attributes of Solution that hold numbers "
             f"({', '.join(sorted(rows_of(kind)))}), or of FrictionSolution "
             f"({', '.join(_of_friction())}), stresses ({', '.join(STRESSES)}), "
-            f"fatigue ({', '.join((*FATIGUES, *MARGINS))})"
+            f"fatigue ({', '.join((*FATIGUES, *MARGINS))}), {', '.join(CONDUCTANCES)}"
         )
     owner = "numbers of a history of wear"
     if kind != "wear":
         owner = f"attributes of {result_class(CLASSES[kind]).__module__.rpartition('.')[0]}."
         owner += f"{CLASSES[kind]} that hold numbers"
-    return f"{owner} ({', '.join(rows_of(kind))})"
+    names = [*rows_of(kind), *(CONDUCTANCES if kind == "wear" else ())]
+    return f"{owner} ({', '.join(names)})"
 
 
 def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
@@ -201,13 +205,15 @@ def plain(
     number: Callable[[Any, str], Any] = wear_number if kind == "wear" else getattr
     numbers: dict[str, object] = {}
     for name, output in outputs.items():
+        if kind == "wear" and output in CONDUCTANCES:
+            continue  # `with_conductance` adds it
         if isinstance(output, str) and output not in own:
             raise ValueError(f"the output {output} is not one of {words}")
         value = number(solution, output) if isinstance(output, str) else output(solution)
         numbers[name] = np.asarray(value, dtype=np.float64).tolist()
     if kind == "wear":
         history: Any = solution
-        for name in errors(outputs, outputs, ESTIMATED_OF_WEAR):
+        for name in errors(outputs, outputs, ("life",)):
             error = history.life and history.life.uncertainty
             numbers[name] = np.nan if error is None else float(error)
     if kind == "bearing":
@@ -224,6 +230,24 @@ def wear_number(history: WearHistory, name: str) -> float:
     if name == "life":
         return math.nan if history.life is None else history.life.distance
     return history.worn_volume if name == "worn_volume" else getattr(history, name)[-1].max()
+
+
+def with_conductance(
+    values: dict[str, object],
+    solution: Solution,
+    outputs: Mapping[str, Output],
+    keywords: Mapping[str, Any],
+) -> tuple[dict[str, object], dict[str, object]]:
+    """Return the outputs with resistance and conductance where they are asked for, and units."""
+    names = {name: output for name, output in outputs.items() if output in CONDUCTANCES}
+    if not names:
+        return values, {}
+    through = solution.conductance(**keywords)
+    share = through.uncertainty / through.resistance
+    added = {name: getattr(through, str(output)) for name, output in names.items()}
+    added |= {name + ERROR: share * value for name, value in added.items()}
+    kept = {name: value for name, value in added.items() if name not in outputs or name in names}
+    return values | kept, {"units": through._si_units()}
 
 
 def errors(
@@ -255,6 +279,8 @@ def output_values(
     for name, output in outputs.items():
         if not isinstance(output, str):
             value = output(solution)
+        elif output in CONDUCTANCES:
+            continue  # `with_conductance` adds it
         elif output in STRESSES:
             if summary is None:
                 summary = solution.stress_summary(**stress)

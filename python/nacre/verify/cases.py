@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -202,6 +202,37 @@ def _spinu_rollers() -> Numbers:
     numbers["peak pressure off the centre [MPa]"] = tilted.peak_pressure / 1e6
     numbers["tilt [1e-5]"] = tilted.tilt[0] * 1e5
     return numbers
+
+
+def _punched(layers: Sequence[nacre.Layer] = ()) -> nacre.Solution:
+    """Return the contact of a disc of radius 1 on layers over a half-space."""
+    grid = nacre.Grid((256, 256), (2.1, 2.1))
+    return nacre.solve(nacre.FlatPunch(1.0), nacre.HalfSpace(STEEL, layers), grid=grid, load=1.0)
+
+
+@_case
+def _conducting_disc() -> Numbers:
+    through = _punched().conductance(conductivity=1.0, counter_conductivity=math.inf)
+    return {"4 k a R": 4 * through.resistance}
+
+
+@_case
+def _layered_disc() -> Numbers:
+    pressed, numbers = _punched([nacre.Layer(STEEL, 0.1)]), Numbers()
+    for ratio in (0.1, 4.0, 100.0):
+        through = pressed.conductance(conductivity=[ratio, 1.0], counter_conductivity=math.inf)
+        numbers[f"4 k a R, layer {ratio:g} times as conductive"] = 4 * through.resistance
+    return numbers
+
+
+@_case
+def _barber() -> Numbers:
+    body, counterbody = nacre.Elastic(110e9, 0.34), nacre.Elastic(210e9, 0.3)
+    solution = nacre.solve(nacre.Paraboloid(1e-3, 2e-3), body, counterbody, load=1.0)
+    through = solution.conductance(conductivity=50.0, counter_conductivity=20.0)
+    modulus, mean = hertz.contact_modulus(body, counterbody), 1 / (1 / 50.0 + 1 / 20.0)
+    stiffness = solution.stiffness()[0, 0]
+    return {"2 R k dW/dδ / E*": float(2 * through.resistance * mean * stiffness / modulus)}
 
 
 @_case

@@ -167,6 +167,11 @@ VARIATIONS: dict[str, list[dict[str, str]]] = {
         {"body.layers[0].thickness": "5"},
         {"wear.rate.substrate": "1e-8"},
     ],
+    "relay": [
+        {"solve.load": "5"},
+        {"body.layers[0].thickness": "5"},
+        {"conductance.conductivity.gold": "1"},
+    ],
     "roll": [{"solve.load": "20"}, {"roll.creepage.across": "0.5"}, {"shape.radius_y": "80"}],
     "fatigue": [{"solve.load": "1500"}, {"shape.radius": "40"}, {"fatigue.friction": "0.3"}],
     "ball-bearing": [

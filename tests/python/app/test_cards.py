@@ -26,6 +26,8 @@ LIMITS = (500.0, 50.0, 5000.0, 0.05)
 LEVELS = ("bad", "unknown", "fair", "good")
 LAST = {"contact": "stress", "wear": "full", "bearing": "full", "indent": "full"}
 """Stage with all parts of an answer, by kind of case."""
+COATINGS = ("coating", "film", "dlc", "gold", "nickel")
+"""Materials of layers."""
 CARDS = list(cards())
 
 
@@ -132,7 +134,7 @@ def test_menus_offer_materials_of_their_kind(name: str) -> None:
     for material, entry, _ in menu_entries(name):
         kinds.setdefault(material, set()).add(nacre.materials[entry].kind)
     for material, offered in kinds.items():
-        assert offered == {"coating" if material in ("coating", "film", "dlc") else "body"}
+        assert offered == {"coating" if material in COATINGS else "body"}
 
 
 @pytest.mark.slow

@@ -79,7 +79,7 @@ def test_files_and_case_files_know_every_keyword_shape_tip_and_adhesion(capsys: 
     kinds = {
         table["properties"]["kind"]["const"].replace("_", "")
         for table in tables.values()
-        if "kind" in table["properties"]
+        if "const" in table["properties"].get("kind", {})
     }
     shapes = {kind.__name__ for kind in nacre.types.Shape.__subclasses__()}
     assert len(shapes) >= 6

@@ -189,8 +189,8 @@ FORBIDDEN = {
 }
 METRES = r"\d [pnµmk]?(m|N m|N/m|J/m)(?![\w/²³])|\[[pnµmk]?(m|N m|N/m)\]"
 """A metre beside a number or in a heading: a prefix makes µm and nm of it, and mm."""
-UNSCALED = "distance|sliding|[Tt]hrough|worn|springs|contact point"
-"""Rows in metres in all units, and of numbers that only SI has."""
+UNSCALED = "distance|sliding|[Tt]hrough|worn|springs|contact point|esistance"
+"""Rows in metres in all units, and of numbers that only SI has; thermal ones have no prefix."""
 SMALL = r"\d[pnµ]?e-(1[3-9]|[2-9]\d)"
 
 

@@ -23,6 +23,7 @@ from nacre.results.values import LATE, RESULTS
 PREFIX = {"": 1.0, "p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
 UNITS = {"N": {"N": 1}, "m": {"m": 1}, "Pa": {"N": 1, "m": -2}, "J": {"N": 1, "m": 1}}
 UNITS |= {"s": {"s": 1}, "rad": {"rad": 1}, "million": {}, "revolutions": {"revolution": 1}}
+UNITS |= {"W": {"N": 1, "m": 1, "s": -1}, "K": {"K": 1}}
 IMPERIAL = {"lbf": (4.4482216152605, {"N": 1}), "in": (0.0254, {"m": 1})}
 IMPERIAL |= {"psi": (4.4482216152605 / 0.0254**2, {"N": 1, "m": -2})}
 SYSTEMS = {
@@ -49,15 +50,15 @@ def one(factor: str) -> tuple[float, Counter[str]]:
 
 
 def read(unit: str) -> tuple[float, Counter[str]]:
-    """Return size and dimensions of a product or quotient of units; at most one is below."""
+    """Return size and dimensions of a product or quotient of units."""
     above, _, below = unit.partition("/")
     size, dimensions = 1.0, Counter[str]()
     for factor in above.split():
         number, counts = one(factor)
         size *= number
         dimensions.update(counts)
-    if below:
-        number, counts = one(below)
+    for factor in filter(None, below.split("/")):
+        number, counts = one(factor)
         size /= number
         dimensions.subtract(counts)
     return size, Counter({unit: count for unit, count in dimensions.items() if count})

@@ -6,7 +6,7 @@ from importlib import resources
 
 KINDS = (
     *("bearing", "ball-bearing", "pair", "contact", "roller", "line", "indentation", "cone"),
-    *("rough", "slide", "roll", "wear", "fatigue", "sweep"),
+    *("rough", "relay", "slide", "roll", "wear", "fatigue", "sweep"),
 )
 """Names of the templates, in the order of the list."""
 
