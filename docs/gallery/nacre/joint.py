@@ -12,10 +12,15 @@ import numpy as np
 import nacre
 from nacre import design, rough
 
-waves = {"hurst": 0.8, "shortest": 16e-6, "longest": 64e-6}
 surfaces = [
     rough.random_surface(
-        (256, 256), (256e-6, 256e-6), rms_slope=0.1, rng=seed, **waves
+        (256, 256),
+        (256e-6, 256e-6),
+        hurst=0.8,
+        shortest=16e-6,
+        longest=64e-6,
+        rms_slope=0.1,
+        rng=seed,
     )
     for seed in (1, 2, 3)
 ]
