@@ -74,8 +74,11 @@ class Conductance(TableResult):
     >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
     >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
     >>> print(through)
-    resistance   104.7 K/W ± ...
-    conductance  9.552 mW/K
+    Resistance 158 K/W ± ... %.
+    No resistance is required.
+    <BLANKLINE>
+    resistance   157.6 K/W ± ... %
+    conductance  6.345 mW/K
     """
 
     _TITLE = "conductance of a contact"
@@ -181,7 +184,7 @@ class Conductance(TableResult):
         >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
         >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
         >>> print(through.verdict(required_resistance=200.0))
-        Resistance 105 K/W ± ... %, 200 K/W at most required.
+        Resistance 158 K/W ± ... %, 200 K/W at most required.
         """
         unit = next(self._si(row) for row in self._QUANTITIES if row.name == "resistance")
         limit = self.required_resistance if required_resistance is None else required_resistance

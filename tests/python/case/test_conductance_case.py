@@ -223,8 +223,13 @@ def test_a_study_has_the_resistance_with_its_error_and_unit(
 
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
-BALL = {"shape": nacre.Sphere(5e-3), "body": STEEL, "counterbody": STEEL, "max_cells": 4096}
-EQUAL = {"conductivity": 46.0, "counter_conductivity": 46.0}
+BALL: dict[str, Any] = {
+    "shape": nacre.Sphere(5e-3),
+    "body": STEEL,
+    "counterbody": STEEL,
+    "max_cells": 4096,
+}
+EQUAL: dict[str, Any] = {"conductivity": 46.0, "counter_conductivity": 46.0}
 
 
 @pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # of few cells
