@@ -196,9 +196,8 @@ AnyConductivity = Annotated[
     with_words('a number or inf, or a table of them by layer or material and "substrate"'),
 ]
 CONDUCTIVITY = (
-    "Conductivity of the {} [W/(m K), S/m]: one number, or one of each layer, by its number, its "
-    'name or that of its material, and of the "substrate"; inf if one temperature or voltage holds '
-    "throughout."
+    "Conductivity of the {} [W/(m K), S/m]. Keys of a table are the layers, by number, name or "
+    'material, and the "substrate". inf is a body at one temperature or voltage throughout.'
 )
 
 

@@ -74,8 +74,11 @@ class Conductance(TableResult):
     >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
     >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
     >>> print(through)
-    resistance   104.7 K/W ± ...
-    conductance  9.552 mW/K
+    Resistance 158 K/W ± ... %.
+    No resistance is required.
+    <BLANKLINE>
+    resistance   157.6 K/W ± ... %
+    conductance  6.345 mW/K
     """
 
     _TITLE = "conductance of a contact"
@@ -148,7 +151,7 @@ class Conductance(TableResult):
     def _remarks(self) -> list[Row]:
         if not self.grid.is_line:
             return []
-        return [remark("datum", "that of the line grid, as of the approach")]
+        return [remark("datum", "as of the approach, by the line grid")]
 
     def _charts(self) -> list[Chart]:
         i, j = np.unravel_index(int(self.flux.argmax()), self.flux.shape)
@@ -183,6 +186,14 @@ class Conductance(TableResult):
         ------
         ValueError
             If it is not above 0 and finite.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
+        >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
+        >>> print(through.verdict(required_resistance=200.0))
+        Resistance 158 K/W ± ... %, 200 K/W at most required.
         """
         unit = next(self._si(row) for row in self._QUANTITIES if row.name == "resistance")
         limit = self.required_resistance if required_resistance is None else required_resistance
@@ -219,6 +230,19 @@ class Conductance(TableResult):
         -------
         matplotlib.axes.Axes
             The axes.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are no axes of Matplotlib.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
+        >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
+        >>> through.plot().get_ylabel()
+        'flux density over its mean'
         """
         from nacre.plot.drawer import draw
 
@@ -244,8 +268,8 @@ def conductance_of(
     report = solution.report
     if counter_conductivity is None:
         raise ValueError(
-            "counter_conductivity must be given: that of the counterbody, or inf for one that is "
-            "at one temperature or voltage throughout"
+            "counter_conductivity must be given; inf is a counterbody at one temperature or "
+            "voltage throughout"
         )
     both = [
         conductivities_of("conductivity", conductivity, report.body, kind),
