@@ -2,9 +2,9 @@
 Heat through a joint
 ====================
 
-Three random surfaces of one spectrum are pressed into steel, and heat flows through their spots. The
-mean of their conductances per area is nearly proportional to the mean pressure. Mikic's correlation
-needs only the rms height and the mean slope of the surfaces.
+Three random surfaces of one spectrum are pressed into steel, and heat flows through their spots.
+The mean of their conductances per area is nearly proportional to the mean pressure. Mikic's
+correlation needs only the rms height and the mean slope of the surfaces.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ joint = design.joint_conductance(
     surfaces,
     steel,
     steel,
-    pressures=np.geomspace(10e6, 1e9, 7),
+    pressures=np.geomspace(10e6, 1e9, 7).tolist(),
     conductivity=46.0,
     counter_conductivity=46.0,
 )
