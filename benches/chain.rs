@@ -6,6 +6,7 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use nacre::conductance::Conductor;
 use nacre::influence::{CellInfluence, Method, influence_coefficients};
 use nacre::{
     Algorithm, Contact, Convolution, Cylinder, Elastic, Grid, HalfSpace, Layer, Motion, Options,
@@ -132,6 +133,20 @@ fn contact(c: &mut Criterion) {
     group.bench_function("hertz_polonsky_keer/256", |b| {
         b.iter(|| converged(&plan, &shape, &motion, &reference));
     });
+    // A ball through a coating that conducts four times as well.
+    let (plan, shape, motion) = hertz(256, 1).expect("valid");
+    let solution = converged(&plan, &shape, &motion, &options);
+    let conductors = || -> Result<[Conductor; 2]> {
+        let body = Conductor::homogeneous(1.0)?.below_layer(4.0, 0.1, 0.0)?;
+        Ok([body, Conductor::homogeneous(f64::INFINITY)?])
+    };
+    let resistance = |solution: &Solution| {
+        let conductance = solution.conductance(conductors()?, None, None)?;
+        Result::Ok(conductance.resistance)
+    };
+    // Between a coating and a substrate of that conductivity throughout.
+    assert!((0.25 * 0.75..0.75).contains(&resistance(&solution).expect("valid")));
+    group.bench_function("conductance/256", |b| b.iter(|| resistance(&solution)));
     let (plan, motion) = roller().expect("valid");
     let shape = Roller::new(5e-3, 19.13e-3, 7.5).expect("valid");
     group.bench_function("roller/1024x128", |b| {
