@@ -298,16 +298,18 @@ def _mikic(
 ) -> Field | None:
     """Return the mean by Mikic's correlation, or None where it does not apply."""
     maps = [shape for shape in shapes if isinstance(shape, core.HeightMap)]
-    bodies: list[Any] = [contact.body, contact.counterbody or core.HalfSpace(core.RIGID)]
+    pair: tuple[Any, Any] = contact.body, contact.counterbody
+    bodies = [body for body in pair if body is not None]
     if len(maps) < len(shapes) or any(getattr(body, "layers", True) for body in bodies):
         return None
-    elastic = [body.substrate for body in bodies if isinstance(body.substrate, core.Elastic)]
     resistivity = sum(
         1 / conductivities_of(name, through[name], body, through["kind"])[-1]
-        for name, body in zip(("conductivity", "counter_conductivity"), bodies, strict=True)
+        for name, body in zip(("conductivity", "counter_conductivity"), pair, strict=True)
     )
     slopes = np.array([[spectral_slope(one) / math.sqrt(math.pi)] for one in maps])
     heights = np.array([[one.heights.std()] for one in maps])
-    strain = math.sqrt(2) * pressures / (contact_modulus(*elastic) * slopes)
+    strain = (
+        math.sqrt(2) * pressures / (contact_modulus(*(body.substrate for body in bodies)) * slopes)
+    )
     values = FACTOR * 2 / resistivity * slopes / heights * strain**EXPONENT
     return np.asarray(values.mean(axis=0))
