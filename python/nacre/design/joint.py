@@ -308,8 +308,6 @@ def _mikic(
     )
     slopes = np.array([[spectral_slope(one) / math.sqrt(math.pi)] for one in maps])
     heights = np.array([[one.heights.std()] for one in maps])
-    strain = (
-        math.sqrt(2) * pressures / (contact_modulus(*(body.substrate for body in bodies)) * slopes)
-    )
-    values = FACTOR * 2 / resistivity * slopes / heights * strain**EXPONENT
-    return np.asarray(values.mean(axis=0))
+    modulus = contact_modulus(*(body.substrate for body in bodies))
+    strain = math.sqrt(2) * pressures / (modulus * slopes)
+    return np.asarray((FACTOR * 2 / resistivity * slopes / heights * strain**EXPONENT).mean(axis=0))
