@@ -30,8 +30,6 @@ from nacre.rough import corrected_area, map_grid, spectral_slope
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Program = Literal["calculix", "moose"]
-OVER = ("pressure",)
 UNITS = {"thermal": "W/K/m²", "electrical": "S/m²"}
 FACTOR, EXPONENT = 1.55, 0.94
 """Numbers of Mikic's correlation (1974); some programs have 1.54. They are those of spots with half
@@ -44,17 +42,17 @@ class JointConductance(TableResult):
 
     _TITLE = "conductance of a joint"
 
-    pressure: Field = quantity("Pa", dims=OVER)
+    pressure: Field = quantity("Pa", dims=("pressure",))
     """Mean pressure [Pa]."""
-    conductance: Field = quantity("W/K/m²", dims=OVER)
+    conductance: Field = quantity("W/K/m²", dims=("pressure",))
     """Conductance per area [W/K/m², S/m²]: the mean of several surfaces."""
-    uncertainty: Field = quantity("W/K/m²", dims=OVER)
+    uncertainty: Field = quantity("W/K/m²", dims=("pressure",))
     """Estimated error of the conductance by the size of the cells [W/K/m², S/m²]."""
-    deviation: Field | None = quantity("W/K/m²", dims=OVER)
+    deviation: Field | None = quantity("W/K/m²", dims=("pressure",))
     """Standard deviation of the mean of surfaces [W/K/m², S/m²]; None for one surface."""
-    share: Field = quantity(dims=OVER)
+    share: Field = quantity(dims=("pressure",))
     """Share of the area in contact: as `nacre.rough.corrected_area` has it."""
-    mikic: Field | None = quantity("W/K/m²", dims=OVER)
+    mikic: Field | None = quantity("W/K/m²", dims=("pressure",))
     """Conductance per area by Mikic's elastic correlation [W/K/m², S/m²], without a film.
 
     It is h = 1.55 k (m/σ) x^0.94 of x = √2 p/(E* m), with k = 2 k₁k₂/(k₁ + k₂), the rms height σ
@@ -80,8 +78,7 @@ class JointConductance(TableResult):
             return None if values is None else numbers(values)
 
         readers: dict[str, Any] = dict.fromkeys((row.name for row in cls._QUANTITIES), column)
-        readers |= {"notes": lambda texts: tuple(map(word, texts))}
-        readers |= {"conducted": word, "surfaces": int}
+        readers |= {"conducted": word, "surfaces": int, "notes": lambda t: tuple(map(word, t))}
         return cls(**read_fields(cls.__name__, state, **readers))
 
     def __eq__(self, other: object) -> bool:
@@ -146,7 +143,7 @@ class JointConductance(TableResult):
 
         return draw(self._charts()[0], axes, (0.6, 0.45))
 
-    def save_table(self, path: AnyPath, *, program: Program) -> Path:
+    def save_table(self, path: AnyPath, *, program: Literal["calculix", "moose"]) -> Path:
         """Write the conductance over the pressure as a program of finite elements reads it.
 
         Both interpolate linearly and keep the first and the last value beyond the pressures, so a
@@ -301,16 +298,16 @@ def _mikic(
 ) -> Field | None:
     """Return the mean by Mikic's correlation, or None where it does not apply."""
     maps = [shape for shape in shapes if isinstance(shape, core.HeightMap)]
-    bodies: list[Any] = [contact.body, contact.counterbody or core.HalfSpace(core.RIGID)]
+    pair: tuple[Any, Any] = contact.body, contact.counterbody
+    bodies = [body for body in pair if body is not None]
     if len(maps) < len(shapes) or any(getattr(body, "layers", True) for body in bodies):
         return None
-    elastic = [body.substrate for body in bodies if isinstance(body.substrate, core.Elastic)]
     resistivity = sum(
         1 / conductivities_of(name, through[name], body, through["kind"])[-1]
-        for name, body in zip(("conductivity", "counter_conductivity"), bodies, strict=True)
+        for name, body in zip(("conductivity", "counter_conductivity"), pair, strict=True)
     )
     slopes = np.array([[spectral_slope(one) / math.sqrt(math.pi)] for one in maps])
     heights = np.array([[one.heights.std()] for one in maps])
-    strain = math.sqrt(2) * pressures / (contact_modulus(*elastic) * slopes)
-    values = FACTOR * 2 / resistivity * slopes / heights * strain**EXPONENT
-    return np.asarray(values.mean(axis=0))
+    modulus = contact_modulus(*(body.substrate for body in bodies))
+    strain = math.sqrt(2) * pressures / (modulus * slopes)
+    return np.asarray((FACTOR * 2 / resistivity * slopes / heights * strain**EXPONENT).mean(axis=0))

@@ -141,6 +141,13 @@ def test_mikics_correlation_of_a_surface() -> None:
     assert JOINT.mikic[0] == pytest.approx(1.55 * k * slope / SURFACE.heights.std() * ratio**0.94)
     # Other surfaces differ from it by some tens of per cent.
     assert (np.abs(JOINT.conductance / JOINT.mikic - 1) < 0.7).all()
+    rigid = design.joint_conductance(
+        SURFACE, STEEL, pressures=[5e7], conductivity=46.0, counter_conductivity=math.inf
+    )
+    assert rigid.mikic is not None
+    ratio = math.sqrt(2 * math.pi) * 5e7 / (STEEL.plane_strain_modulus * 0.1)
+    scale = slope / SURFACE.heights.std()
+    assert rigid.mikic[0] == pytest.approx(1.55 * 2 * 46.0 * scale * ratio**0.94)
     coated = design.joint_conductance(SURFACE, COATED, NICKEL, pressures=[5e7], **BARE)
     assert coated.mikic is None
     assert "Mikic" not in str(coated)
