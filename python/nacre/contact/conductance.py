@@ -299,6 +299,8 @@ def conductivities_of(name: str, given: Conductivities, body: Any, kind: Kind) -
     else:
         numbers = _number(name, given, kind)
     each = layer_numbers(name, numbers, body, "conductivity")
+    if math.inf in each[:-1]:
+        raise ValueError(f"{name} of layers must be finite, got {given!r}")
     for value in each:
         size, unit = system().unit(UNITS[kind][2])
         if not value > 0:

@@ -265,7 +265,7 @@ def test_a_required_resistance_is_judged_with_its_error() -> None:
         ({"conductivity": 46.0, "film": np.zeros((2, 2))}, r"of shape \(48, 40\)"),
         ({"conductivity": 46.0, "kind": "magnetic"}, "kind must be one of"),
         ({"conductivity": math.inf, "counter_conductivity": math.inf}, "perfect conductors"),
-        ({"conductivity": [math.inf, 1.0, 1.0]}, "conductivity"),
+        ({"conductivity": [math.inf, 1.0, 1.0]}, "conductivity of layers must be finite"),
     ],
 )
 def test_wrong_arguments_are_named(keywords: dict[str, Any], message: str) -> None:
