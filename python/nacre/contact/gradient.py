@@ -58,6 +58,11 @@ def described(output: Output) -> tuple[str, object]:
         if output == "located_peak":
             warn_of('"located_peak"', '"peak_pressure"')
             output = "peak_pressure"
+        if output in ("resistance", "conductance"):
+            raise ValueError(
+                f'output must be one with derivatives, got "{output}": the conductance changes in '
+                "steps, with the cells in contact; compare `solution.conductance` of two solutions"
+            )
         if output not in WORDS:
             raise ValueError(
                 f"output must be {_quoted(WORDS)}, a pair such as "

@@ -485,6 +485,7 @@ FIELD_VALUES = {
     # gradients
     "PRESSED.gradient('contact_area')": "participation area",
     "PRESSED.gradient('contact_extent')": "area estimate",
+    "PRESSED.gradient('resistance')": "the conductance changes in steps",
     "PRESSED.gradient('peak')": 'output must be "approach"',
     "PRESSED.gradient(('peak', 8.0))": "pressure_norm",
     "PRESSED.gradient({'stress': 'zz'})": "exactly one of the keys",
