@@ -106,7 +106,8 @@ class JointConductance(TableResult):
             columns.append(shares(f"± of {self.surfaces} surfaces", self.deviation / value))
         columns.append(shares("in contact", self.share))
         if self.mikic is not None:
-            columns.append(column("Mikic", self.mikic, unit))
+            changes = (self.mikic / value - 1).tolist()
+            columns.append(("Mikic", [f"{100 * change:+.2g} %" for change in changes]))
         heads, texts = zip(*columns, strict=True)
         return Printed(heads, [*zip(*texts, strict=True)], (), ">")
 
