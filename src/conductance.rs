@@ -30,7 +30,7 @@ use std::f64::consts::PI;
 
 use ndarray::Array2;
 
-use crate::compliance::response::{Asymptotes, Body, Response};
+use crate::compliance::response::{Asymptotes, Body, Response, refuse_free};
 use crate::contact::{Compliance, Solution, outline_error};
 use crate::error::{Error, Result, not_negative, positive, refuse_if};
 use crate::numerics::linear_cg::Watch;
@@ -65,8 +65,12 @@ impl Conductor {
     /// The layers of `body` and its substrate, with conductivities from the surface down; one stands for all.
     ///
     /// # Errors
-    /// A conductivity that is not above 0, an infinite one of a layer, and another number of them than of layers with the substrate.
+    /// A plate with a free base, a conductivity that is not above 0, an infinite one of a layer, and another number of them than of
+    /// layers with the substrate.
     pub fn of(body: Option<&Body>, conductivities: &[f64]) -> Result<Self> {
+        if let Some(body) = body {
+            refuse_free(&**body, "bodies that conduct")?;
+        }
         let layers = body.and_then(|body| body.half_space()).map_or(&[][..], |body| body.layers());
         let (count, all) = (layers.len() + 1, conductivities);
         if let [f64::INFINITY] = all {
@@ -164,7 +168,7 @@ pub struct Conductance {
     pub resistance: f64,
     /// Estimated error of the resistance.
     pub uncertainty: f64,
-    /// Flux density over its sum over the cells, (nx, ny).
+    /// Share of each cell of the flux, (nx, ny).
     pub flux: Array2<f64>,
 }
 

@@ -287,3 +287,8 @@ def test_contacts_without_conductance_are_refused() -> None:
     half = nacre.Grid((32, 32), (4e-4, 4e-4), periodic=(True, False))
     with pytest.raises(ValueError, match="both axes"):
         quiet(nacre.solve, BALL, STEEL, load=1.0, grid=half).conductance(**keywords)
+    plate = nacre.HalfSpace(nacre.FREE, [nacre.Layer(STEEL, 1e-3)])
+    both = nacre.Grid((32, 32), (4e-4, 4e-4), periodic=(True, True))
+    bent = quiet(nacre.solve, BALL, plate, load=1.0, grid=both)
+    with pytest.raises(ValueError, match="free base"):
+        bent.conductance(**keywords)
