@@ -116,8 +116,14 @@ class Conductance(TableResult):
 
     @classmethod
     def _checked(cls, state: dict[str, object]) -> dict[str, Any]:
-        grid, flux = values.decode(state.pop("grid")), np.asarray(state.pop("flux"), dtype=float)
-        if not isinstance(grid, core.Grid) or flux.shape != grid.shape:
+        grid = values.decode(state.pop("grid"))
+        if not isinstance(grid, core.Grid):
+            raise ValueError(f"{cls.__name__}: grid must be a Grid, got {grid!r}")
+        try:
+            flux = np.asarray(state.pop("flux"), dtype=float)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{cls.__name__}: flux must be an array of numbers") from error
+        if flux.shape != grid.shape:
             raise ValueError(f"flux must have the shape of the grid, got {flux.shape} on {grid!r}")
         return super()._checked(state) | {"grid": grid, "flux": flux}
 

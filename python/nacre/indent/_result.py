@@ -378,6 +378,7 @@ class Fit(Shown, Result):
             for name in ("body", "tip", "counterbody", "adhesion"):
                 state[name] = decode(state[name])
             pairs = (state["known"] or {}).items()
+            state["tolerance"] = checked_tolerance(state["tolerance"])
             state["known"] = {key: (float(value), float(error)) for key, (value, error) in pairs}
             for name in ("estimates", "standard_errors"):
                 state[name] = {key: float(value) for key, value in state[name].items()}

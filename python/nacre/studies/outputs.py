@@ -187,7 +187,7 @@ def outputs_by_name(
             all_choices = ", ".join(map(_choices, kinds))
             raise ValueError(f"outputs must be {all_choices}, or functions, got {output!r}")
         if name in TEXTS:
-            raise ValueError(f"outputs must not have the names {', '.join(TEXTS)}, got {name!r}")
+            raise ValueError(f"outputs must have other names than {', '.join(TEXTS)}, got {name!r}")
     by_name = dict(items)
     if not by_name or len(by_name) != len(items):
         names = [name for name, _ in items]

@@ -237,14 +237,14 @@ def texts_of(module: str) -> list[str]:
     tree = ast.parse(source.read_text(encoding="utf-8"))
     texts = []
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and ast.unparse(node.func) == "warnings.warn":
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "warn":
             texts.append(text_of(node.args[0]))
         if isinstance(node, ast.Yield) and node.value is not None:
             texts.append(text_of(node.value))
         for block in (getattr(node, "body", []), getattr(node, "orelse", [])):
             pairs = itertools.pairwise(block) if isinstance(block, list) else ()
             for before, after in pairs:  # a text that has a name
-                if isinstance(before, ast.Assign) and "warnings.warn(text" in ast.unparse(after):
+                if isinstance(before, ast.Assign) and "warn(text" in ast.unparse(after):
                     texts.append(text_of(before.value))
     return [text for text in texts if text]
 

@@ -383,7 +383,7 @@ def warnings_in_source() -> Iterator[str]:
     for path in sorted(Path(nacre.indent.__file__).parent.glob("*.py")):
         tree = ast.parse(path.read_text("utf-8"))
         for node in ast.walk(tree):
-            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("warnings.warn", "_warn"):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("warn", "_warn"):
                 text = node.args[0]
                 if isinstance(text, ast.Name):
                     assert text.id in PASSED_ON, (path, text.id)
