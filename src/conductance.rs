@@ -215,9 +215,15 @@ impl Solution {
                 "conductance needs a body with a finite conductivity: both are perfect conductors",
             ));
         };
-        let pair = [Some(body), conductors.next()];
+        let other = conductors.next();
         let films = film.as_ref().map(|film| film.on(grid)).transpose()?;
-        let wave = |alpha: f64| pair.iter().flatten().map(|body| body.normal(alpha)).sum::<f64>();
+        let wave = |alpha: f64| {
+            [Some(&body), other.as_ref()]
+                .into_iter()
+                .flatten()
+                .map(|body| body.normal(alpha))
+                .sum::<f64>()
+        };
         // −dR/d ln A.
         let rate = grid.is_line().then(|| {
             let area = cells * grid.cell_area();
@@ -227,8 +233,8 @@ impl Solution {
             });
             wave(4.0 / area) / PI + film / area
         });
-        let bodies = pair.map(|body| body.map(Body::from));
-        let (conductance, mut flux) = self.unit_flux(bodies, film, watch)?;
+        let (conductance, mut flux) =
+            self.unit_flux(body.into(), other.map(Body::from), film, watch)?;
         flux /= flux.sum();
         let period = if along_x { grid.size().into_iter().product() } else { 1.0 };
         let resistance = period / conductance;

@@ -69,7 +69,7 @@ impl fmt::Display for Percent {
     }
 }
 
-/// Factor from which on the size of the cells that are needed is not known to a factor of 2.
+/// Factor above which the size of the cells that are needed is not known to a factor of 2.
 const KNOWN_TIMES: f64 = 10.0;
 
 /// The cells that an error needs to fall by this factor, for messages. It falls as the steps of the pressure from cell to cell,

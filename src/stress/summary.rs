@@ -544,6 +544,8 @@ struct Planes<'a, 'b> {
     smooth: Option<[Vec<f64>; STRESSES]>,
     /// Points of the edge of the contact, around which values are searched between cells.
     edge: Vec<CellPoint>,
+    /// Whether the edge turns at each of them within a cell, as at the ends of slender contacts, on layers.
+    is_end: Vec<bool>,
     /// Whether the law of the edge is that of layers.
     is_on_layers: bool,
     /// Whether a point of the edge lies in a cell or beside it: larger values between centres are those at points.
@@ -592,9 +594,12 @@ impl<'a, 'b> Planes<'a, 'b> {
         for [i, j] in edge.iter().flat_map(|point| around(shape, point.cell, 1)) {
             near_edge[i * ny + j] = true;
         }
+        let is_on_layers = plan.whole.solved.as_ref().is_some_and(|of| of.subcell.is_on_layers());
+        let turns = |k: usize| is_on_layers && plan.turn_of_edge(&edge, k) > TURN_OF_END;
         Self {
             feels_lost_edge: plan.feels_lost_edge(&edge),
-            is_on_layers: plan.whole.solved.as_ref().is_some_and(|of| of.subcell.is_on_layers()),
+            is_end: (0..edge.len()).map(turns).collect(),
+            is_on_layers,
             plan,
             scope,
             friction,
@@ -807,8 +812,9 @@ impl<'a, 'b> Planes<'a, 'b> {
         kinds: [ErrorOf; N],
         of: impl Fn(&Tensor) -> [f64; N],
     ) -> ControlFlow<(), [Extreme; N]> {
-        let points: Vec<_> =
-            self.edge.iter().filter(|point| self.has(point.cell)).copied().collect();
+        let counted = self.edge.iter().zip(&self.is_end).filter(|(point, _)| self.has(point.cell));
+        let (points, is_end): (Vec<CellPoint>, Vec<bool>) =
+            counted.map(|(point, is_end)| (*point, *is_end)).unzip();
         if points.is_empty() || !self.has_points(place) {
             return ControlFlow::Continue(peaks);
         }
@@ -844,6 +850,15 @@ impl<'a, 'b> Planes<'a, 'b> {
             starts.sort_by(|a, b| beside[*b][which].total_cmp(&beside[*a][which]));
             starts.truncate(EDGE_STARTS);
             let of = |tensor: &Tensor| of(tensor)[which];
+            // Larger values may be at ends whose cells do not show them.
+            for k in (0..points.len()).filter(|k| is_end[*k]) {
+                if let Some(value) = search.value((k, 0), of)? {
+                    let error = search.error((k, 0), (value, kinds[which]), of)?;
+                    let [x, y] = search.planes.plan.position(&points[k]);
+                    let end = Extreme::of(value, [x, y, place.depth], error);
+                    peaks[which] = peaks[which].bounded_by(end);
+                }
+            }
             let Some((place_at, value)) = search.largest(&starts, of)? else { continue };
             let error = search.error(place_at, (value, kinds[which]), of)?;
             let Some(point) = search.point(place_at) else { continue };
@@ -1176,16 +1191,19 @@ impl<'s, 'a, 'b> EdgeSearch<'s, 'a, 'b> {
 /// on other contacts (`tests/python/contact/test_coat_shapes.py`).
 const FIT_SHARE: f64 = 0.005;
 
+/// The same in line contact, where the fit has one row of cells, and steps of a strip make stresses up to 0.7 % too large.
+const FIT_SHARE_OF_LINE: f64 = 0.0075;
+
 /// Turn of the edge over a cell, in radians, up to which [`FIT_SHARE`] holds: that of a ball of eight cells to the radius. The fits
 /// take the edge of a cell for straight, and beyond, a share of the value is added that grows as the square of the turn.
 const FITTED_TURN: f64 = 0.12;
 
-/// Largest such share, at an end that lies in one cell: the largest tension of slender contacts is up to 21 % too small there
+/// Largest such share, at an end that lies within one cell. The largest tension of slender contacts is up to 21 % too small there
 /// (`tests/python/contact/test_stress.py`).
 const SHARE_OF_END: f64 = 0.25;
 
-/// The same in line contact, where the fit has one row of cells, and steps of a strip make stresses up to 0.7 % too large.
-const FIT_SHARE_OF_LINE: f64 = 0.0075;
+/// Turn of the edge over a cell, in radians, above which a point is at such an end: the share is then a tenth.
+const TURN_OF_END: f64 = 0.5;
 
 /// Stress over the largest pressure below which errors are shares of that pressure.
 const LEAST_PART: f64 = 0.2;

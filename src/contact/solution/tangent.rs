@@ -257,23 +257,7 @@ impl Solution {
             return Ok([[0.0; 3]; 3]);
         };
         let tangent = Tangent::plan(self, window)?;
-        let mut columns: Vec<[Vec<f64>; 2]> = Vec::new();
-        for freedom in 0..3 {
-            let right = tangent.column(freedom);
-            let pressure = tangent.solve_beside(&right, &[], TOLERANCE, watch)?;
-            columns.push([right, pressure]);
-        }
-        // bᵢᵀxⱼ + xᵢᵀ(bⱼ − K xⱼ): symmetric, and in error by the square of the residual alone.
-        let mut stiffness = [[0.0; 3]; 3];
-        for (j, [b, x]) in columns.iter().enumerate() {
-            let mut residual = vec![0.0; b.len()];
-            tangent.apply(x, &mut residual);
-            residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-            for (i, [b, y]) in columns.iter().enumerate() {
-                stiffness[i][j] = dot(b, x) + dot(y, &residual);
-            }
-        }
-        tangent.lower_datum(&mut stiffness);
+        let (stiffness, _) = tangent.quadratic_form(3, watch)?;
         let mut stiffness = tangent.about_origin(stiffness);
         for axis in (0..2).filter(|&axis| self.grid().is_periodic()[axis]) {
             stiffness[axis + 1] = [0.0; 3];
@@ -291,28 +275,21 @@ impl Solution {
     /// As [`Solution::stiffness`].
     pub(crate) fn unit_flux(
         &self,
-        [body, counterbody]: [Option<Body>; 2],
+        body: Body,
+        counterbody: Option<Body>,
         springs: Option<Compliance>,
         watch: Option<&mut Watch>,
     ) -> Result<(f64, Array2<f64>)> {
         let go_on = &mut || ControlFlow::Continue(());
         let watch: &mut Watch = watch.unwrap_or(go_on);
         let mut field = Array2::zeros(self.grid().shape());
-        let (Some(window), Some(body)) = (self.cells_in_contact(), body) else {
-            return Ok((0.0, field));
-        };
+        let Some(window) = self.cells_in_contact() else { return Ok((0.0, field)) };
         let report = Report { body, counterbody, ..self.report.clone() };
         let (operator, coefficients) = (None, None);
         let on = Self { report, operator, coefficients, compliance: springs, ..self.clone() };
         let tangent = Tangent::plan(&on, window.clone())?;
-        let ones = tangent.column(0);
-        let flux = tangent.solve_beside(&ones, &[], TOLERANCE, watch)?;
-        let mut residual = vec![0.0; ones.len()];
-        tangent.apply(&flux, &mut residual);
-        residual.iter_mut().zip(&ones).for_each(|(r, b)| *r = b - *r);
-        // In error by the square of the residual alone.
-        let mut sum = [[dot(&ones, &flux) + dot(&flux, &residual), 0.0, 0.0], [0.0; 3], [0.0; 3]];
-        tangent.lower_datum(&mut sum);
+        let (sum, mut fields) = tangent.quadratic_form(1, watch)?;
+        let flux = fields.remove(0);
         let [x, y] = window;
         let cells = x.flat_map(|i| y.clone().map(move |j| [i, j]));
         cells.zip(flux).for_each(|(cell, q)| field[cell] = q);
@@ -321,6 +298,30 @@ impl Solution {
 }
 
 impl Tangent {
+    /// Bᵀ K⁻¹ B of the first `count` columns of B, with the datum of the contact, and these columns of K⁻¹ B.
+    fn quadratic_form(
+        &self,
+        count: usize,
+        watch: &mut Watch,
+    ) -> Result<([[f64; 3]; 3], Vec<Vec<f64>>)> {
+        let columns: Vec<_> = (0..count).map(|freedom| self.column(freedom)).collect();
+        let fields: Result<Vec<_>> =
+            columns.iter().map(|b| self.solve_beside(b, &[], TOLERANCE, watch)).collect();
+        let fields = fields?;
+        // bᵢᵀxⱼ + xᵢᵀ(bⱼ − K xⱼ): symmetric, and in error by the square of the residual alone.
+        let mut form = [[0.0; 3]; 3];
+        for (j, (b, x)) in columns.iter().zip(&fields).enumerate() {
+            let mut residual = vec![0.0; b.len()];
+            self.apply(x, &mut residual);
+            residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+            for (i, (b, y)) in columns.iter().zip(&fields).enumerate() {
+                form[i][j] = dot(b, x) + dot(y, &residual);
+            }
+        }
+        self.lower_datum(&mut form);
+        Ok((form, fields))
+    }
+
     /// Turns the tangent for K into that for K − s 1ᵀ1, by the formula of Sherman & Morrison.
     fn lower_datum(&self, stiffness: &mut [[f64; 3]; 3]) {
         let column = stiffness.map(|row| row[0]);
