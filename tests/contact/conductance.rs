@@ -2,7 +2,8 @@
 
 use nacre::conductance::{Conductance, Conductor};
 use nacre::{
-    Compliance, Contact, Elastic, FlatPunch, Grid, Motion, Options, Result, Setup, Solution, Sphere,
+    Compliance, Contact, Cylinder, Elastic, FlatPunch, Grid, Motion, Options, Result, Setup,
+    Solution, Sphere, Surface,
 };
 use serde_json::Value;
 
@@ -55,15 +56,18 @@ fn discs_have_the_resistance_of_other_methods() -> Result<()> {
     Ok(())
 }
 
-/// R = E*/2k dδ/dW of homogeneous bodies, whatever touches: Barber (2003); open, repeating, and of two bodies.
+/// R = E*/2k dδ/dW of homogeneous bodies, whatever touches: Barber (2003); open, repeating and line contacts of two bodies.
 #[test]
 fn the_theorem_of_barber_holds() -> Result<()> {
     let material = Elastic::new(2.0, 0.3)?;
     let open = Grid::new([48, 40], [1.0, 1.1])?;
-    for grid in [open, open.periodic([true; 2])?] {
+    let ball: &dyn Surface = &Sphere::new(2.0)?;
+    let cylinder: &dyn Surface = &Cylinder::new(2.0)?;
+    for (grid, shape) in
+        [(open, ball), (open.periodic([true; 2])?, ball), (Grid::line(80, 1.1)?, cylinder)]
+    {
         let contact = plan(material, grid)?;
-        let solution =
-            contact.solve(&Sphere::new(2.0)?, &Motion::load(0.02), &Options::default())?;
+        let solution = contact.solve(shape, &Motion::load(0.02), &Options::default())?;
         let [k, other] = [3.0, 7.0].map(|k| Conductor::homogeneous(k).expect("a conductor"));
         let found = solution.conductance([k, other], None, None)?;
         let [[stiffness, ..], ..] = solution.stiffness(None)?;

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.paths import by_layer
-from nacre._tools.typing import Field
+from nacre._tools.typing import Field, among
 from nacre._tools.units import system
 from nacre.cards import materials
 from nacre.contact.layers import layer_numbers
@@ -51,7 +51,9 @@ def units_of(kind: str, *, line: bool = False, per_area: bool = False) -> dict[s
 
     length = "m" if line else "m²" if per_area else ""
     return {
-        **dict.fromkeys(("resistance", "uncertainty", "required_resistance"), over(length)),
+        **dict.fromkeys(
+            ("resistance", "uncertainty", "layer_resistance", "required_resistance"), over(length)
+        ),
         "conductance": f"{conductance}/{length}".rstrip("/"),
         **dict.fromkeys(("conductivity", "counter_conductivity"), conductivity),
         "film": over("m²"),
@@ -72,8 +74,8 @@ class Conductance(TableResult):
     --------
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
-    >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
-    >>> print(through)
+    >>> heat = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
+    >>> print(heat)
     Resistance 158 K/W ± ... %.
     No resistance is required.
     <BLANKLINE>
@@ -99,6 +101,11 @@ class Conductance(TableResult):
     """Grid of the contact."""
     notes: tuple[str, ...]
     """What limits the validity: warnings of the contact."""
+    layer_resistance: float | None = quantity("K/W", label="of the layers")
+    """Resistance of the layers under the mean flux, times an area [m² K/W, Ω m²].
+
+    It is not part of `resistance`; None unless the contact repeats and has layers.
+    """
     required_resistance: float | None = None
     """Largest resistance, in the unit of `resistance`, which the verdict compares with."""
 
@@ -135,7 +142,7 @@ class Conductance(TableResult):
 
     @property
     def per_area(self) -> bool:
-        """Whether the contact repeats, so that resistance and conductance are those of an area."""
+        """Whether the contact repeats, so that its resistance is times an area."""
         return any(self.grid.periodic)
 
     def _si_units(self) -> dict[str, str]:
@@ -157,7 +164,7 @@ class Conductance(TableResult):
     def _remarks(self) -> list[Row]:
         if not self.grid.is_line:
             return []
-        return [remark("datum", "as of the approach, by the line grid")]
+        return [remark("datum", "as for the approach, see `Grid.line`")]
 
     def _charts(self) -> list[Chart]:
         i, j = np.unravel_index(int(self.flux.argmax()), self.flux.shape)
@@ -197,11 +204,11 @@ class Conductance(TableResult):
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
         >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
-        >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
-        >>> print(through.verdict(required_resistance=200.0))
+        >>> heat = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
+        >>> print(heat.verdict(required_resistance=200.0))
         Resistance 158 K/W ± ... %, 200 K/W at most required.
         """
-        unit = next(self._si(row) for row in self._QUANTITIES if row.name == "resistance")
+        unit = self._si_units()["resistance"]
         limit = self.required_resistance if required_resistance is None else required_resistance
         _check_required(limit)
         value = display.number(self.resistance, unit, 3)
@@ -246,8 +253,8 @@ class Conductance(TableResult):
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
         >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
-        >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
-        >>> through.plot().get_ylabel()
+        >>> heat = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
+        >>> heat.plot().get_ylabel()
         'flux density over its mean'
         """
         from nacre.plot.drawer import draw
@@ -269,7 +276,7 @@ def conductance_of(
     kind: Kind,
 ) -> Conductance:
     """Return the conductance of a solved contact."""
-    if kind not in KINDS:
+    if not among(kind, KINDS):
         raise ValueError(f"kind must be one of {KINDS}, got {kind!r}")
     report = solution.report
     if counter_conductivity is None:
@@ -277,11 +284,12 @@ def conductance_of(
             "counter_conductivity must be given; inf is a counterbody at one temperature or "
             "voltage throughout"
         )
-    both = [
-        conductivities_of("conductivity", conductivity, report.body, kind),
-        conductivities_of("counter_conductivity", counter_conductivity, report.counterbody, kind),
+    bodies = report.body, report.counterbody
+    conductivities = [
+        conductivities_of("conductivity", conductivity, bodies[0], kind),
+        conductivities_of("counter_conductivity", counter_conductivity, bodies[1], kind),
     ]
-    films = np.asarray(core.real("film", film) if np.ndim(film) == 0 else film, dtype=float)
+    films = core.real_array("film", film)
     if films.ndim and films.shape != solution.grid.shape:
         raise ValueError(
             f"film must be a number or of shape {solution.grid.shape}, got shape {films.shape}"
@@ -290,9 +298,19 @@ def conductance_of(
         raise ValueError(
             f"film must be finite and at least 0, got {films.min():g} to {films.max():g}"
         )
-    resistance, uncertainty, flux = solution._solved.conductance(both, films)
+    resistance, uncertainty, flux = solution._solved.conductance(conductivities, films)
     notes = tuple(dict.fromkeys(report.warning_kinds))
-    return Conductance(resistance, uncertainty, flux, kind, solution.grid, notes)
+    layers = None
+    if any(solution.grid.periodic):
+        layers = sum(map(_layer_resistance, bodies, conductivities)) or None
+    return Conductance(resistance, uncertainty, flux, kind, solution.grid, notes, layers)
+
+
+def _layer_resistance(body: Any, conductivities: list[float]) -> float:
+    """Return the resistance per area of the layers of a body, each thickness over conductivity."""
+    layers = body.layers if isinstance(body, core.HalfSpace) else ()
+    each = conductivities * len(layers) if len(conductivities) == 1 else conductivities
+    return sum(layer.thickness / value for layer, value in zip(layers, each, strict=False))
 
 
 def conductivities_of(name: str, given: Conductivities, body: Any, kind: Kind) -> list[float]:
@@ -304,10 +322,10 @@ def conductivities_of(name: str, given: Conductivities, body: Any, kind: Kind) -
         numbers = [_number(name, value, kind) for value in given]
     else:
         numbers = _number(name, given, kind)
-    each = layer_numbers(name, numbers, body, "conductivity")
-    if math.inf in each[:-1]:
+    conductivities = layer_numbers(name, numbers, body, "conductivity")
+    if math.inf in conductivities[:-1]:
         raise ValueError(f"{name} of layers must be finite, got {given!r}")
-    for value in each:
+    for value in conductivities:
         size, unit = system().unit(UNITS[kind][2])
         if not value > 0:
             raise ValueError(f"{name} must be above 0, got {value:g}")
@@ -316,11 +334,11 @@ def conductivities_of(name: str, given: Conductivities, body: Any, kind: Kind) -
                 f"{name} must be a conductivity in {unit}, got {value:g}: is it a resistivity? "
                 "give its inverse"
             )
-    return each
+    return conductivities
 
 
 def _number(name: str, given: object, kind: Kind) -> float:
-    """Return a conductivity, that of a card by its name."""
+    """Return a conductivity, which a name takes from its card."""
     if not isinstance(given, str):
         return core.real(name, given)
     if kind == "electrical":

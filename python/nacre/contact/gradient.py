@@ -60,8 +60,8 @@ def described(output: Output) -> tuple[str, object]:
             output = "peak_pressure"
         if output in ("resistance", "conductance"):
             raise ValueError(
-                f'output must be one with derivatives, got "{output}": the conductance changes in '
-                "steps, with the cells in contact; compare `solution.conductance` of two solutions"
+                f'output must have derivatives, got "{output}": the conductance changes in steps '
+                "with the cells in contact; compare `solution.conductance` of two solutions"
             )
         if output not in WORDS:
             raise ValueError(

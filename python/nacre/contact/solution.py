@@ -356,8 +356,8 @@ class Solution(NormalContact, Shown, Result):
         """Resistance of the contact to heat or to current, between bodies of layers.
 
         The cells in contact are at one temperature or voltage on each side, and all others are
-        insulated. It is that of the cells that are in contact, whatever pressed them: layers,
-        roughness, hardness, wear and springs count by the cells that they leave.
+        insulated. Layers, roughness, hardness, wear and springs change the resistance through the
+        cells in contact, and layers also through their conductivities.
 
         Parameters
         ----------
@@ -367,7 +367,8 @@ class Solution(NormalContact, Shown, Result):
             with "substrate". A name of `nacre.materials` stands for its thermal conductivity,
             and `math.inf` for a body at one temperature or voltage throughout.
         counter_conductivity : float, str, dict or sequence
-            That of the counterbody; required, since a rigid one has none of its own.
+            Conductivity of the counterbody in the same forms. It must be given, since a rigid
+            counterbody has no material.
         film : float or array_like
             Resistance per area of a film between the surfaces [m² K/W, Ω m²], of all cells or of
             each ``(nx, ny)``.
@@ -396,9 +397,9 @@ class Solution(NormalContact, Shown, Result):
 
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
         >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, steel, load=10.0)
-        >>> through = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
+        >>> heat = solution.conductance(conductivity=46.0, counter_conductivity=46.0)
         >>> radius = (0.75 * 10.0 * 5e-3 / (steel.plane_strain_modulus / 2)) ** (1 / 3)
-        >>> round(through.resistance * 2 * 46.0 * radius, 2)
+        >>> round(heat.resistance * 2 * 46.0 * radius, 2)
         1.0
         """
         from nacre.contact.conductance import conductance_of

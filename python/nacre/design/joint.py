@@ -256,13 +256,13 @@ def joint_conductance(
     rise = loads.ndim == 1 and (np.diff(loads, prepend=0.0) > 0).all()
     if not (rise and loads.size and np.isfinite(loads).all()):
         raise ValueError(f"pressures must be numbers above 0 that rise, got {pressures!r}")
-    through: dict[str, Any] = {
+    conduction: dict[str, Any] = {
         "conductivity": conductivity,
         "counter_conductivity": counter_conductivity,
         "film": film,
         "kind": kind,
     }
-    found = np.empty((len(shapes), loads.size, 3))
+    per_surface = np.empty((len(shapes), loads.size, 3))
     notes: dict[str, str] = {}  # of a kind, the first
     with lasting("joint", progress) as tell, heard():  # the result has the warnings
         for j, shape in enumerate(shapes):
@@ -271,15 +271,15 @@ def joint_conductance(
             area = cells.size[0] * cells.size[1]
             for k, load in enumerate((loads * area).tolist()):
                 last = contact.solve(shape, load=load, hardness=hardness, initial=last)
-                one, report = last.conductance(**through), last.report
-                error = one.conductance * one.uncertainty / one.resistance
-                found[j, k] = one.conductance, error, corrected_area(last) / area
+                conductance, report = last.conductance(**conduction), last.report
+                error = conductance.conductance * conductance.uncertainty / conductance.resistance
+                per_surface[j, k] = conductance.conductance, error, corrected_area(last) / area
                 notes = dict(zip(report.warning_kinds, report.warnings, strict=False)) | notes
                 if tell is not None:
-                    tell((j * loads.size + k + 1) / found[..., 0].size)
-    n, (mean, error, share) = len(shapes), found.mean(axis=0).T
-    deviation = found[..., 0].std(axis=0, ddof=1) / math.sqrt(n) if n > 1 else None
-    columns = loads, mean, error, deviation, share, _mikic(shapes, contact, loads, through)
+                    tell((j * loads.size + k + 1) / per_surface[..., 0].size)
+    n, (mean, error, share) = len(shapes), per_surface.mean(axis=0).T
+    deviation = per_surface[..., 0].std(axis=0, ddof=1) / math.sqrt(n) if n > 1 else None
+    columns = loads, mean, error, deviation, share, _mikic(shapes, contact, loads, conduction)
     return JointConductance(*columns, kind, n, (*notes.values(),))
 
 
@@ -295,7 +295,7 @@ def _cells(shape: core.Shape, grid: core.Grid | None) -> core.Grid:
 
 
 def _mikic(
-    shapes: Sequence[core.Shape], contact: Contact, pressures: Field, through: Mapping[str, Any]
+    shapes: Sequence[core.Shape], contact: Contact, pressures: Field, conduction: Mapping[str, Any]
 ) -> Field | None:
     """Return the mean by Mikic's correlation, or None where it does not apply."""
     maps = [shape for shape in shapes if isinstance(shape, core.HeightMap)]
@@ -304,11 +304,12 @@ def _mikic(
     if len(maps) < len(shapes) or any(getattr(body, "layers", True) for body in bodies):
         return None
     resistivity = sum(
-        1 / conductivities_of(name, through[name], body, through["kind"])[-1]
+        1 / conductivities_of(name, conduction[name], body, conduction["kind"])[-1]
         for name, body in zip(("conductivity", "counter_conductivity"), pair, strict=True)
     )
-    slopes = np.array([[spectral_slope(one) / math.sqrt(math.pi)] for one in maps])
-    heights = np.array([[one.heights.std()] for one in maps])
+    slopes = np.array([[spectral_slope(heights) / math.sqrt(math.pi)] for heights in maps])
+    deviations = np.array([[surface.heights.std()] for surface in maps])
     modulus = contact_modulus(*(body.substrate for body in bodies))
     strain = math.sqrt(2) * pressures / (modulus * slopes)
-    return np.asarray((FACTOR * 2 / resistivity * slopes / heights * strain**EXPONENT).mean(axis=0))
+    by_surface = FACTOR * 2 / resistivity * slopes / deviations * strain**EXPONENT
+    return np.asarray(by_surface.mean(axis=0))

@@ -242,12 +242,12 @@ def with_conductance(
     names = {name: output for name, output in outputs.items() if output in CONDUCTANCES}
     if not names:
         return values, {}
-    through = solution.conductance(**keywords)
-    share = through.uncertainty / through.resistance
-    added = {name: getattr(through, str(output)) for name, output in names.items()}
+    conductance = solution.conductance(**keywords)
+    share = conductance.uncertainty / conductance.resistance
+    added = {name: getattr(conductance, str(output)) for name, output in names.items()}
     added |= {name + ERROR: share * value for name, value in added.items()}
     kept = {name: value for name, value in added.items() if name not in outputs or name in names}
-    return values | kept, {"units": through._si_units()}
+    return values | kept, {"units": conductance._si_units()}
 
 
 def errors(

@@ -99,7 +99,8 @@ def two_spots(rng: np.random.Generator) -> tuple[Any, float]:
     return through(n), through(4 * n).resistance
 
 
-@pytest.mark.parametrize(("kind", "count"), [(ellipse, 60), (coated_disc, 60), (two_spots, 12)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "count"), [(ellipse, 240), (coated_disc, 330), (two_spots, 30)])
 def test_the_error_holds(kind: Any, count: int) -> None:
     rng = np.random.default_rng(11)
     for _ in range(count):
@@ -122,6 +123,27 @@ def test_the_error_holds_on_rough_surfaces() -> None:
         assert coarse.per_area
         assert abs(coarse.resistance - dense.resistance) < coarse.uncertainty + dense.uncertainty
         assert coarse.uncertainty < 0.5 * coarse.resistance
+
+
+def test_layers_of_a_joint_have_their_own_resistance() -> None:
+    """Under the mean flux: each thickness over its conductivity."""
+    grid = nacre.Grid((32, 32), (1e-4, 1e-4), periodic=(True, True))
+    layers = [nacre.Layer(STEEL, 2e-6), nacre.Layer(STEEL, 3e-6)]
+    for body, count in ((STEEL, 0), (nacre.HalfSpace(STEEL, layers), 1)):
+        joint = quiet(nacre.solve, BALL, body, STEEL, load=0.1, grid=grid)
+        through = joint.conductance(
+            conductivity=[10.0, 30.0, 46.0] if count else 46.0, counter_conductivity=46.0
+        )
+        assert through.per_area
+        assert str(through).count("of the layers") == count
+        if count:
+            assert through.layer_resistance is not None
+            assert_close(through.layer_resistance, 2e-6 / 10 + 3e-6 / 30, rtol=1e-12)
+            alike = joint.conductance(conductivity=46.0, counter_conductivity=46.0)
+            assert alike.layer_resistance is not None
+            assert_close(alike.layer_resistance, 5e-6 / 46, rtol=1e-12)
+    open_contact = coated().conductance(conductivity=[1.0, 2.0, 3.0], counter_conductivity=46.0)
+    assert open_contact.layer_resistance is None
 
 
 def test_lines_count_from_their_datum() -> None:
@@ -262,6 +284,8 @@ def test_a_required_resistance_is_judged_with_its_error() -> None:
         ({"conductivity": 1e-5}, "is it a resistivity"),
         ({"conductivity": 46.0, "film": -1.0}, "film must be finite and at least 0"),
         ({"conductivity": 46.0, "film": math.nan}, "film must be finite and at least 0"),
+        ({"conductivity": 46.0, "film": "thin"}, "film must be"),
+        ({"conductivity": 46.0, "kind": ["thermal"]}, "kind must be one of"),
         ({"conductivity": 46.0, "film": np.zeros((2, 2))}, r"of shape \(48, 40\)"),
         ({"conductivity": 46.0, "kind": "magnetic"}, "kind must be one of"),
         ({"conductivity": math.inf, "counter_conductivity": math.inf}, "perfect conductors"),
@@ -271,7 +295,7 @@ def test_a_required_resistance_is_judged_with_its_error() -> None:
 def test_wrong_arguments_are_named(keywords: dict[str, Any], message: str) -> None:
     if "given" not in message:
         keywords = {"counter_conductivity": 46.0, **keywords}
-    with pytest.raises((KeyError, ValueError), match=message):
+    with pytest.raises((KeyError, TypeError, ValueError), match=message):
         coated().conductance(**keywords)
 
 
