@@ -102,9 +102,10 @@ class Conductance(TableResult):
     notes: tuple[str, ...]
     """What limits the validity: warnings of the contact."""
     layer_resistance: float | None = quantity("K/W", label="of the layers")
-    """Resistance of the layers under the mean flux, times an area [m² K/W, Ω m²].
+    """Resistance of the layers under the mean flux [K/W, Ω].
 
-    It is not part of `resistance`; None unless the contact repeats and has layers.
+    It is times an area, in m² K/W or Ω m², and not part of `resistance`. None unless the contact
+    repeats and has layers.
     """
     required_resistance: float | None = None
     """Largest resistance, in the unit of `resistance`, which the verdict compares with."""

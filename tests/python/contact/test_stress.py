@@ -648,3 +648,38 @@ def test_elongated_cells_have_errors_of_their_size(radius: float) -> None:
     for cells in ((80, 40), (80, 80), (160, 40), (160, 80), (160, 160)):
         value, stated = tension(cells)
         assert abs(value - finest) < stated < 0.5 * value, cells
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:the extremes")
+def test_random_slender_contacts_are_within_their_errors() -> None:
+    """Bare and coated ellipses on cells up to 33 times as long as wide, against finer cells.
+
+    The largest tension may lie at an end that the cells do not show, which its bound must reach.
+    """
+    rng = np.random.default_rng(17)
+    for k in range(16):
+        radius = np.exp(rng.uniform(np.log(0.05), np.log(3)))
+        coating = nacre.Elastic(210e9 * np.exp(rng.uniform(np.log(0.3), np.log(3))), 0.25)
+        thickness = np.exp(rng.uniform(np.log(1e-6), np.log(2e-5)))
+        body = nacre.HalfSpace(STEEL, [nacre.Layer(coating, thickness)] if k % 4 else [])
+        shape = nacre.Paraboloid(radius, 5e-3)
+        extent = nacre.solve(shape, body, load=50.0, max_cells=16384).contact_extent
+        size = (2.4 * extent[0][1], 2.4 * extent[1][1])
+        cells = int(rng.integers(50, 160)), int(rng.integers(40, 100))
+        options = {"friction": 0.1, "direction": (1, 0)} if k % 2 else {}
+
+        def extremes(
+            x: int, y: int, problem: Any = (shape, body, cells, size, options)
+        ) -> list[tuple[float, float]]:
+            shape, body, cells, size, options = problem
+            grid = nacre.Grid((x * cells[0], y * cells[1]), size)
+            summary = nacre.solve(shape, body, load=50.0, grid=grid).stress_summary(**options)
+            return [
+                (getattr(layer, name)[0], layer.uncertainty[name])
+                for layer in summary.layers
+                for name in ("von_mises", "tension", "max_shear")
+            ]
+
+        for (value, error), (finer, rest) in zip(extremes(1, 1), extremes(4, 2), strict=True):
+            assert abs(value - finer) <= error + rest, (k, value, finer)
