@@ -217,6 +217,9 @@ impl Tangent {
     }
 }
 
+/// A quadratic form of the columns of B.
+type Form = [[f64; 3]; 3];
+
 /// Residual of the linear systems. The error of the stiffness is its square.
 const TOLERANCE: f64 = 1e-9;
 
@@ -299,11 +302,7 @@ impl Solution {
 
 impl Tangent {
     /// Bᵀ K⁻¹ B of the first `count` columns of B, with the datum of the contact, and these columns of K⁻¹ B.
-    fn quadratic_form(
-        &self,
-        count: usize,
-        watch: &mut Watch,
-    ) -> Result<([[f64; 3]; 3], Vec<Vec<f64>>)> {
+    fn quadratic_form(&self, count: usize, watch: &mut Watch) -> Result<(Form, Vec<Vec<f64>>)> {
         let columns: Vec<_> = (0..count).map(|freedom| self.column(freedom)).collect();
         let fields: Result<Vec<_>> =
             columns.iter().map(|b| self.solve_beside(b, &[], TOLERANCE, watch)).collect();
